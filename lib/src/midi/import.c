@@ -507,6 +507,19 @@ static int list_damps(const midi_part *part, change *list)
     return count;
 }
 
+// a vibraphone's dampers lie on its bars for a moment, up to the next stroke; times (s) chosen
+static int add_dampers(const midi_part *part, int head, double at, change *list)
+{
+    double next = HUGE_VAL;
+    for (int i = 0; i < part->count && next == HUGE_VAL; i++)
+        if (part->stroke[i].head == head && part->stroke[i].note->seconds > at - 1e-3)
+            next = part->stroke[i].note->seconds;
+    double from = fmax(fmin(at, next - 0.2), 0), until = fmin(from + 0.3, next - 0.02);
+    list[0] = (change){from, head, "pedal 0", NULL};
+    list[1] = (change){until, head, "pedal 1", NULL};
+    return until > from ? 2 : 0;
+}
+
 // cloths, pedals, hi-hats; returns how many changes there are then
 static int list_orders(const midi_part *part, change *list, int count)
 {
@@ -520,6 +533,8 @@ static int list_orders(const midi_part *part, change *list, int count)
                 list[count++] = (change){o->seconds, h, o->value ? "muffle 1" : "muffle 0", NULL};
             else if (o->kind == MIDI_WIRES && has_wires(&part->head[h]))
                 list[count++] = (change){o->seconds, h, o->value ? "wires 1" : "wires 0", NULL};
+            else if (o->kind == MIDI_PEDAL && count + 2 <= most)
+                count += add_dampers(part, h, o->seconds, list + count);
     }
     for (int k = 0; k < part->pedals; k++)
         list[count++] =

@@ -73,7 +73,7 @@ bool himc_music_apart(const music *m, int part, int lane)
 
 static double mark_value(const music_sign *s)
 {
-    return s->meaning == MUSIC_DYNAMIC ? s->value : FORTE;
+    return s->meaning == MUSIC_DYNAMIC ? s->value : s->value >= 2 ? floor(s->value / 2) / 7 : FORTE;
 }
 
 // the next mark of the part behind sign `i`, up to `until`, an accent only if there is no other one
@@ -167,10 +167,10 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
         if (!open || begins || !leads)
             add(l, beat, l->now);
         if (s->meaning == MUSIC_FORTEPIANO) {
-            add(l, beat, FORTE);
+            add(l, beat, mark_value(s));
             beat += LOUD_TIME * second;
         }
-        add(l, beat, s->value);
+        add(l, beat, fmod(s->value, 2));
         l->from = begins ? l->from : -1;
     } else if (s->meaning == MUSIC_LOUDER && beat > l->more + SAME) { // not of each staff
         if (open && !begins)

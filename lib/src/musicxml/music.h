@@ -20,7 +20,11 @@ typedef struct music_bar {
     int beats, unit; ///< of the metre
     char number[12]; ///< as printed
     bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
-    int times;        ///< of `backward`, 2 by default
+    int times;    ///< of `backward`, 2 by default
+    double hold;  ///< length of its last note, which a fermata over the barline holds; 0: none
+    double split; ///< beat of a repeat in it; 0: none
+    bool split_back, split_on;
+    int said;         ///< the same as words say it, in the bar or before; 0: none do
     unsigned endings; ///< bit k: it is played the k-th time, from 1; 0: always
 } music_bar;
 
@@ -93,6 +97,8 @@ enum {
     MUSIC_GRACES,
     MUSIC_ATTACKS,
     MUSIC_UNKNOWN,
+    MUSIC_PEDALS,
+    MUSIC_SLASHES,
     MUSIC_OMISSIONS
 };
 

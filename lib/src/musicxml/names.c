@@ -9,6 +9,7 @@
 #include "musicxml/names.h"
 
 #include "midi/part.h"
+#include "musicxml/phrases.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -75,6 +76,13 @@ static const struct {
     {"clave$|claves", MIDI_DRUMS, 75},
     {"cow bell|cowbell|kuhglocke|bells cowbell|cencerro|campanacci|cloche de vache", MIDI_DRUMS,
      56},
+    {"cloches de v|cloches de t", MIDI_DRUMS, 56},
+    {"campane|cloches|chim$|tub bell|tub b$|t bells", MIDI_TUBULAR_BELL, 0},
+    {"glk$", MIDI_GLOCKENSPIEL, 0},
+    {"g c$|b dr$|bs dr$", MIDI_DRUMS, MIDI_BASS_DRUM},
+    {"sn dr$|sn d$|sn$", MIDI_DRUMS, 38},
+    {"tamb$", MIDI_DRUMS, 54},
+    {"hängebeck|hängendes beck", MIDI_DRUMS, 49},
     {"low agogo", MIDI_DRUMS, 68},
     {"agogo", MIDI_DRUMS, 67},
     {"low bongo", MIDI_DRUMS, 61},
@@ -376,6 +384,28 @@ bool himc_music_names(const char *name)
     return text[0] && begins_with(text, programs) == 0;
 }
 
+// true where a word says which of a sort, or in what a cymbal hangs
+static bool is_beside(const char *at)
+{
+    bool is = begins_with(at, "sus|sosp|concert|orchest") > 0;
+    for (int d = 0; d < 3; d++)
+        is |= begins_with(at, degrees[d]) > 0;
+    return is;
+}
+
+size_t himc_music_named(const char *words, size_t *begin)
+{
+    static const char *const with[] = {" with ", " w/", " mit ", " con ", " avec "};
+    *begin = strspn(words, " ([{");
+    size_t length = strcspn(words + *begin, "([{)]}");
+    for (size_t i = 0; i < sizeof with / sizeof *with; i++) {
+        const char *at = strstr(words + *begin, with[i]);
+        if (at && (size_t)(at - words) < *begin + length)
+            length = (size_t)(at - words) - *begin;
+    }
+    return length;
+}
+
 midi_choice himc_music_change(const char *words, int *key, bool *bare)
 {
     static const char tells[] =
@@ -388,30 +418,32 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
                       sticks[] = "stick|mallet|schläg|schleg|baguette|bacchett|brush|besen";
     char text[MOST_TEXT];
     fold(text, words, true);
-    size_t told = begins_with(text, tells), length = 0;
+    size_t begin, end = himc_music_named(text, &begin), length = 0;
+    bool which = text[begin + end] && is_beside(text + begin + end + 1); // "Tom (high)"
+    if (!which)
+        text[begin + end] = '\0';
+    const char *named = text + begin;
+    size_t told = begins_with(named, tells);
     char *taken = strstr(text, " nehmen");
     if (taken)
         *taken = '\0';
-    const char *at = text + told;
+    const char *at = named + told;
     at += begins_with(at, articles);
     midi_choice choice = himc_music_instrument(at, key);
     *bare = told == 0 && !taken;
-    for (const char *w = text; *w; w++)
+    for (const char *w = named; *w; w++)
         if (begins_with(w, sticks) > 0)
             return MIDI_ANY;
     if (!*bare)
         return choice;
-    for (int d = 0; d < 3; d++) // "high wood block"
-        if (begins_with(at, degrees[d]) > 0)
-            at += strcspn(at, " "), at += strspn(at, " ");
+    while (is_beside(at)) // "high wood block"
+        at += strcspn(at, " "), at += strspn(at, " ");
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
         length = begins_with(at, instruments[i].words);
     for (at += length + strcspn(at + length, " "); *at; at += strcspn(at, " ")) {
-        at += *at == ' ';
-        bool more = begins_with(at, tails) > 0 || strspn(at, "0123456789iv() ") == strlen(at);
-        for (int d = 0; d < 3; d++)
-            more |= begins_with(at, degrees[d]) > 0;
-        if (!more)
+        at += strspn(at, " (");
+        if (*at && begins_with(at, tails) == 0 && !is_beside(at) &&
+            strspn(at, "0123456789iv() ") != strlen(at))
             return MIDI_ANY;
     }
     return length > 0 && *key != MUSIC_NO_KEY && *key != MUSIC_ANY_KEY ? choice : MIDI_ANY;
@@ -530,13 +562,34 @@ static int read_pitch(const char **at, bool german)
     return octave > 0 && *at == p + 1 ? pitch + 12 * (octave + 1) : pitch;
 }
 
-// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to D"
+// a text whose arrows and dashes between spaces are words
+static void read_arrows(char out[MOST_TEXT], const char *words)
+{
+    static const char *const arrows[] = {"→", "->", "–", "—", " - "};
+    size_t length = 0;
+    for (; *words && length < MOST_TEXT - 5; words++) {
+        size_t i = 0;
+        while (i < 5 && strncmp(words, arrows[i], strlen(arrows[i])) != 0)
+            i++;
+        if (i < 5) {
+            memcpy(out + length, " to ", 4);
+            length += 4;
+            words += strlen(arrows[i]) - 1;
+        } else {
+            out[length++] = *words;
+        }
+    }
+    out[length] = '\0';
+}
+
+// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to
+// D"; without such a verb it is no more than pitches: "F to G"
 static int read_tunings(const char *text, int most, double *value)
 {
     static const char *const tells[] = {"muta", "mutano", "change", "umstimmen", "stimmen",
                                         "tune", "retune", "cambia", "nach",      "gliss"};
-    static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta", "->", "→"};
-    bool told = false;
+    static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta"};
+    bool told = false, pure = true;
     for (size_t i = 0; i < sizeof tells / sizeof *tells; i++) {
         const char *at = strstr(text, tells[i]);
         told |= at && begins_word(text, at);
@@ -544,10 +597,11 @@ static int read_tunings(const char *text, int most, double *value)
     bool german = strstr(text, "stimm") || strstr(text, "nach ");
     int from = 12, drum = 0, count = 0;
     bool joined = false;
-    for (const char *at = text; told && *at && count < most;) {
+    for (const char *at = text; (told || pure) && *at && count < most;) {
         at += strspn(at, " ,;:()");
         const char *word = at;
         int pitch = read_pitch(&at, german);
+        pure &= pitch < 0 || (from == 12 ? !joined : joined);
         if (pitch >= 0 && (joined || from != 12)) {
             value[count++] = 100 * (from + 128 * drum) + pitch;
             from = 12;
@@ -561,17 +615,37 @@ static int read_tunings(const char *text, int most, double *value)
         for (size_t i = 0; i < 4; i++)
             drum =
                 strncmp(at, drums[i], length) == 0 && drums[i][length] == ' ' ? (int)i + 1 : drum;
-        for (size_t i = 0; i < sizeof joins / sizeof *joins; i++)
-            joined |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
+        bool join = false, before = from != 12 || word[0] != 'm'; // "muta F in G" begins with none
+        for (size_t i = 0; i < sizeof joins / sizeof *joins && before; i++)
+            join |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
+        joined |= join;
+        pure &= join || length == 0;
         at += length;
     }
-    return count;
+    return told || (pure && from == 12) ? count : 0;
+}
+
+// a dynamic before other words: "p cresc.", "pp leggiero"; of one letter, which may be a pitch,
+// `known` words, or one of three letters
+static bool begins_dynamic(const char *words, bool known, music_meaning *meaning, double *value)
+{
+    char name[8] = "";
+    words += strspn(words, " ");
+    size_t length = strcspn(words, " ,;\n"), longest = 0;
+    memcpy(name, words, length < sizeof name ? length : 0);
+    for (const char *at = words + length; *at; at += strspn(at, " ,;-(\n")) {
+        size_t letters = strcspn(at, " ,;-(\n");
+        longest = letters > longest ? letters : longest;
+        at += letters;
+    }
+    return (length > 1 || known || longest > 2) && strcmp(name, "n") != 0 &&
+           find_dynamic(name, meaning, value);
 }
 
 int himc_music_words(const char *words, int most, music_meaning *meaning, double *value)
 {
-    char text[MOST_TEXT];
-    int count = 0;
+    char text[MOST_TEXT], arrows[MOST_TEXT];
+    int count = 0, way;
     fold(text, words, false);
     if (strcmp(text, "r") == 0 || strcmp(text, "l") == 0) {
         meaning[0] = MUSIC_HAND;
@@ -584,9 +658,18 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
         meaning[0] = MUSIC_FINE;
         return 1;
     }
-    count = read_tunings(text, most, value);
+    if ((way = himc_music_syllables(text)) != 0) {
+        meaning[0] = MUSIC_GROWING;
+        value[0] = way;
+        return 1;
+    }
+    read_arrows(arrows, words);
+    fold(arrows, arrows, false);
+    count = read_tunings(arrows, most, value);
+    const bool tunes = count > 0;
     for (int i = 0; i < count; i++)
         meaning[i] = strstr(text, "gliss") ? MUSIC_GLISS : MUSIC_TUNING;
+    count += !tunes && himc_music_metronome(text, &meaning[0], &value[0]);
     const size_t rows = sizeof instructions / sizeof *instructions;
     for (const char *at = text; *at && count < most;) {
         size_t longest = 0, found = rows;
@@ -605,6 +688,15 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
             count++;
         }
         at += longest > 0 ? longest : 1;
+    }
+    music_meaning dynamic;
+    double level;
+    if (!tunes && count < most && begins_dynamic(words, count > 0, &dynamic, &level)) {
+        memmove(meaning + 1, meaning, (size_t)count * sizeof *meaning);
+        memmove(value + 1, value, (size_t)count * sizeof *value);
+        meaning[0] = dynamic;
+        value[0] = level;
+        count++;
     }
     return count;
 }

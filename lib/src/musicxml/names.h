@@ -15,6 +15,9 @@ midi_choice himc_music_instrument(const char *name, int *key);
 /// Kl. Trommel"), or, `bare`, that are a name and no more.
 midi_choice himc_music_change(const char *words, int *key, bool *bare);
 
+/// Where the name in words is, in front of brackets and "with ..."; returns its length.
+size_t himc_music_named(const char *words, size_t *begin);
+
 /// True of a name that says an instrument, known or not; false of none, and of a program's sampler.
 bool himc_music_names(const char *name);
 
@@ -31,14 +34,14 @@ const char *himc_music_notehead(himc_spot spot);
 
 /// What a word or a sign asks for.
 typedef enum music_meaning {
-    MUSIC_DYNAMIC,     ///< value: 0 .. 1
-    MUSIC_ATTACK,      ///< sf, sfz: of this note alone
-    MUSIC_FORTEPIANO,  ///< value: the dynamic after the attack
-    MUSIC_LOUDER,      ///< value: steps above the dynamic before, or below 0
-    MUSIC_WEDGE,       ///< value: 1 crescendo, -1 diminuendo, 0 its end
-    MUSIC_GROWING,     ///< value: 1 or -1, -7 to nothing; as a word, to the next dynamic
-    MUSIC_TEMPO,       ///< value: (beats per minute)
-    MUSIC_TEMPO_WORD,  ///< the same, by custom
+    MUSIC_DYNAMIC,    ///< value: 0 .. 1
+    MUSIC_ATTACK,     ///< sf, sfz: of this note alone
+    MUSIC_FORTEPIANO, ///< value: the dynamic after the attack, and twice the attack's step if not f
+    MUSIC_LOUDER,     ///< value: steps above the dynamic before, or below 0
+    MUSIC_WEDGE,      ///< value: 1 crescendo, -1 diminuendo, 0 its end
+    MUSIC_GROWING,    ///< value: 1 or -1, -7 to nothing; as a word, to the next dynamic
+    MUSIC_TEMPO,      ///< value: (beats per minute)
+    MUSIC_TEMPO_WORD, ///< the same, by custom
     MUSIC_TEMPO_AGAIN, ///< value: the beat whose tempo returns, after a jump back
     MUSIC_TEMPO_SHARE, ///< value: of the tempo before
     MUSIC_SWING,       ///< value: share of the first of two eighths, 1 more: of two 16ths
@@ -50,6 +53,7 @@ typedef enum music_meaning {
     MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note; -key: the drum of that key here
     MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
     MUSIC_DAMP,        ///< what sounds is damped here
+    MUSIC_PEDAL,       ///< it goes up here
     MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood
     MUSIC_MUFFLE,      ///< value: 1 or 0
     MUSIC_WIRES,       ///< value: 1 or 0

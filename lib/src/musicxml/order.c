@@ -12,6 +12,59 @@
 #include <string.h>
 
 #define MOST_PLAYED 60000 // bars; chosen: a day of music
+#define SAME 1e-6         // (beats)
+
+static void split_place(music_place *at, int bar, double beat)
+{
+    bool later = at->bar > bar || (at->bar == bar && at->beat > beat - SAME);
+    at->beat -= later && at->bar == bar ? beat : 0;
+    at->bar += later;
+}
+
+// a bar with a repeat in it is two
+static bool split_bars(music *m, himc_error *error)
+{
+    for (int k = 0; k < m->bar_count; k++) {
+        const music_bar whole = m->bars[k];
+        if (whole.split <= 0 || whole.split >= whole.length - SAME) {
+            m->bars[k].backward |= whole.split_back;
+            continue;
+        }
+        if (!himc_array_grow(&m->bars, m->bar_count, &m->bar_room, sizeof *m->bars, error))
+            return false;
+        memmove(&m->bars[k + 1], &m->bars[k], (size_t)(m->bar_count++ - k) * sizeof *m->bars);
+        music_bar *a = &m->bars[k], *b = a + 1;
+        a->length = whole.split;
+        b->length -= whole.split;
+        a->backward = whole.split_back;
+        a->fine = a->to_coda = a->da_capo = a->dal_segno = false;
+        a->endings &= ~1u;
+        a->split = b->split = 0;
+        a->split_back = b->split_back = false;
+        a->times = whole.split_back ? 2 : whole.times;
+        b->forward = whole.split_on;
+        b->segno = b->coda = false;
+        b->endings &= 1u;
+        for (int i = 0; i < m->note_count; i++)
+            split_place(&m->notes[i].at, k, whole.split);
+        for (int i = 0; i < m->sign_count; i++)
+            split_place(&m->signs[i].at, k, whole.split);
+    }
+    return true;
+}
+
+// words beside a repeat say how often
+static void spread_times(music *m)
+{
+    int said = 0;
+    for (int i = 0; i < m->bar_count; i++) {
+        music_bar *b = &m->bars[i];
+        said = b->said ? b->said : b->forward ? 0 : said;
+        if (b->backward && b->times == 2 && said > 2)
+            b->times = said;
+        said = b->backward ? 0 : said;
+    }
+}
 
 // an ending lasts from where it begins to where it stops, or for one bar
 static void spread_endings(music *m)
@@ -211,12 +264,15 @@ static bool add_returns(music *m, const order *o, himc_error *error)
 
 bool himc_music_order(music *m, midi_file *file, himc_error *error)
 {
+    if (!split_bars(m, error))
+        return false;
     order o = {.bars = m->bar_count};
     o.played = malloc(MOST_PLAYED * sizeof *o.played);
     o.begin = malloc(MOST_PLAYED * sizeof *o.begin);
     o.first = malloc(((size_t)m->bar_count + 1) * sizeof *o.first);
     bool good = o.played && o.begin && o.first;
     if (good) {
+        spread_times(m);
         spread_endings(m);
         o.count = play_order(m, o.played);
         good = place_bars(m, &o, file);

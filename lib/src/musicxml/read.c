@@ -5,7 +5,7 @@
 /// `backup` and `forward`; durations count in the part's divisions of a quarter note. Notes are
 /// taken of parts that are played; tempi, fermatas, repeats and jumps of all parts, as programs
 /// write them into one part only. Invariant: each note of such a part is taken or counted.
-#include "musicxml/instruments.h"
+#include "musicxml/reader.h"
 
 #include "base/array.h"
 #include "base/format.h"
@@ -18,27 +18,8 @@
 
 enum { RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
+#define SAME 1e-6            // (beats)
 #define LEAST_OWN (-1.0 / 7) // dynamic of a note, whose accent adds a step
-
-typedef struct reader {
-    music *music;
-    himc_error *error;
-    const xml_node *root, *list; ///< the part's entry in the part-list
-    int part, bar;
-    music_instruments instruments;
-    double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
-    double time;                     ///< length of a bar (beats) ...
-    int beats, unit;                 ///< ... and its metre, as far as a score can say it
-    int transpose;                   ///< (semitones)
-    int fifths;                      ///< of the key: sharps, below 0 flats
-    bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
-    int head;                        ///< the first note of a chord, -1: it is left out
-    int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
-    int lane;                        ///< of a direction
-    int repeated;                    ///< bars back that a sign repeats; 0: none
-    bool niente;                     ///< the open hairpin ends in nothing
-    bool failed;
-} reader;
 
 void himc_music_omit(music *m, int which, int bar)
 {
@@ -67,260 +48,33 @@ static void add_unknown(music *m, const char *name)
         snprintf(m->unknown + used, left, ", ...");
 }
 
-static void add_sign(reader *r, double beat, music_meaning meaning, double value)
+// a fermata over a barline holds what ends there
+static void hold_tail(music_reader *r)
 {
     music *m = r->music;
-    if (!himc_array_grow(&m->signs, m->sign_count, &m->sign_room, sizeof *m->signs, r->error)) {
-        r->failed = true;
-        return;
-    }
-    m->signs[m->sign_count] =
-        (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value, r->lane, 0};
-    m->sign_count++;
-}
-
-// signs and words
-
-static bool is_yes(const xml_node *node, const char *attribute)
-{
-    return himc_xml_has(node, attribute, "yes");
-}
-
-static int lane_of(const xml_node *node)
-{
-    return 100 * himc_music_staff(node) + abs(himc_xml_whole(node, "voice", 0)) % 100;
-}
-
-static void add_swing(reader *r, double beat, double first, double second, double unit)
-{
-    if (first > 0 && second > 0)
-        add_sign(r, beat, MUSIC_SWING, first / (first + second) + (unit < 0.5));
-}
-
-static void read_sound(reader *r, const xml_node *sound, double beat, bool dynamic_too)
-{
-    const xml_node *change = himc_xml_child(sound, "instrument-change");
-    for (; change; change = himc_xml_next(change))
-        himc_music_instruments_sound(&r->instruments, r->lane / 100, change);
-    music_bar *bar = &r->music->bars[r->bar];
-    const char *tempo = himc_xml_attribute(sound, "tempo"),
-               *level = himc_xml_attribute(sound, "dynamics");
-    if (strtod(tempo, NULL) > 0)
-        add_sign(r, beat, MUSIC_TEMPO, strtod(tempo, NULL));
-    if (dynamic_too && level[0]) // percent of a velocity of 90
-        add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic(0.9 * strtod(level, NULL), 0));
-    for (const xml_node *w = himc_xml_child(sound, "swing"); w; w = himc_xml_next(w)) {
-        bool straight = himc_xml_child(w, "straight");
-        add_swing(r, beat, straight ? 1 : himc_xml_number(w, "first", 2),
-                  straight ? 1 : himc_xml_number(w, "second", 1),
-                  strcmp(himc_xml_text(w, "swing-type"), "16th") == 0 ? 0.25 : 0.5);
-    }
-    bar->da_capo |= is_yes(sound, "dacapo");
-    bar->dal_segno |= himc_xml_attribute(sound, "dalsegno")[0] != '\0';
-    bar->segno |= himc_xml_attribute(sound, "segno")[0] != '\0';
-    bar->coda |= himc_xml_attribute(sound, "coda")[0] != '\0';
-    bar->to_coda |= himc_xml_attribute(sound, "tocoda")[0] != '\0';
-    bar->fine |= himc_xml_attribute(sound, "fine")[0] != '\0';
-}
-
-// of all parts, wherever they are written
-static bool is_tempo(music_meaning meaning)
-{
-    return meaning >= MUSIC_TEMPO && meaning <= MUSIC_FERMATA;
-}
-
-// "Coda" alone, where it begins
-static bool is_coda(const char *text)
-{
-    while (isspace((unsigned char)*text))
-        text++;
-    return tolower((unsigned char)*text) == 'c' && strncmp(text + 1, "oda", 3) == 0 &&
-           text[4 + strspn(text + 4, " .:\n")] == '\0';
-}
-
-static bool read_words(reader *r, const xml_node *words, double beat, bool own, bool sound)
-{
-    music_bar *bar = &r->music->bars[r->bar];
-    music_meaning meaning[8];
-    double value[8];
-    bool dynamic = false;
-    int count = himc_music_words(words->text, 8, meaning, value), key;
-    bool bare = false; // the name of an instrument, which may have that of a mallet in it
-    bool name = himc_music_change(words->text, &key, &bare) != MIDI_ANY && bare;
-    bar->coda |= is_coda(words->text) && !sound;
-    for (int i = 0; i < count; i++) {
-        // a `sound` beside it says where it jumps
-        bar->da_capo |= meaning[i] == MUSIC_DA_CAPO && !sound;
-        bar->dal_segno |= meaning[i] == MUSIC_DAL_SEGNO && !sound;
-        bar->to_coda |= meaning[i] == MUSIC_TO_CODA && !sound;
-        bar->fine |= meaning[i] == MUSIC_FINE && !sound;
-        if (name && meaning[i] == MUSIC_MALLET)
-            continue;
-        if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
-            add_sign(r, beat, meaning[i], value[i]);
-        dynamic |= meaning[i] == MUSIC_DYNAMIC;
-    }
-    if (own)
-        himc_music_instruments_change(&r->instruments, r->lane / 100, words->text, count > 0);
-    return dynamic;
-}
-
-static double beats_of(const char *unit)
-{
-    static const struct {
-        const char *unit;
-        double beats;
-    } units[] = {{"whole", 4},  {"half", 2},  {"quarter", 1}, {"eighth", .5},
-                 {"16th", .25}, {"breve", 8}, {"32nd", .125}};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strcmp(unit, units[i].unit) == 0)
-            return units[i].beats;
-    return 0;
-}
-
-// a note and its number, or, by either element, a note that becomes another; two that become two
-// others, which a tuplet may hold, are a swing
-static void read_metronome(reader *r, const xml_node *metronome, double beat)
-{
-    const char *text = himc_xml_text(metronome, "per-minute");
-    double beats[4] = {0}, more = 0; // the last is the first
-    int notes = 0;
-    for (const xml_node *d = metronome->child; d; d = d->next) {
-        bool note = himc_xml_is(d, "metronome-note");
-        const xml_node *dot = note ? himc_xml_child(d, "metronome-dot") : NULL;
-        if (note || himc_xml_is(d, "beat-unit")) {
-            memmove(beats + 1, beats, 3 * sizeof *beats);
-            beats[0] = beats_of(note ? himc_xml_text(d, "metronome-type") : d->text);
-            more = beats[0] / 2;
-            notes++;
-        }
-        if (himc_xml_is(d, "beat-unit-dot") || dot) {
-            beats[0] += more;
-            more /= 2;
-        }
-    }
-    double number = strtod(text + strcspn(text, "0123456789"), NULL); // "ca. 96"
-    if (notes == 2 && beats[1] > 0 && beats[0] > 0)
-        add_sign(r, beat, MUSIC_TEMPO_SHARE, beats[0] / beats[1]);
-    else if (notes == 1 && beats[0] * number > 0)
-        add_sign(r, beat, MUSIC_TEMPO, beats[0] * number);
-    else if (notes == 4 && beats[3] == beats[2])
-        add_swing(r, beat, beats[1], beats[0], beats[3]);
-}
-
-static void read_wedge(reader *r, const xml_node *wedge, double beat)
-{
-    double way = himc_xml_has(wedge, "type", "crescendo")    ? 1
-                 : himc_xml_has(wedge, "type", "diminuendo") ? -1
-                                                             : 0;
-    bool circle = is_yes(wedge, "niente");
-    // the circle of a diminuendo stands at its stop, or at its beginning, as some programs write
-    if (way > 0 ? circle : himc_xml_has(wedge, "type", "stop") && (circle || r->niente))
-        add_sign(r, beat, MUSIC_DYNAMIC, 0);
-    if (!himc_xml_has(wedge, "type", "continue")) {
-        add_sign(r, beat, MUSIC_WEDGE, way);
-        r->niente = way < 0 && circle;
+    double *hold = &m->bars[r->bar].hold, length = r->tail_end - r->tail;
+    *hold = *hold > 0 ? fmin(*hold, length) : length;
+    for (int i = m->note_count - 1; i >= 0; i--) {
+        music_note *n = &m->notes[i];
+        if (n->at.part != r->part || n->at.bar != r->bar)
+            return;
+        n->held |= n->at.beat + n->length > r->tail_end - SAME;
     }
 }
 
-// a line behind words about tuning is a pedal's
-static void read_line(reader *r, const xml_node *dashes, double beat, int first)
-{
-    const music *m = r->music;
-    const char *number = himc_xml_attribute(dashes, "number");
-    int line = number[0] ? number[0] - '0' : 1;
-    if (line < 1 || line > MUSIC_LINES_MAX)
-        return;
-    if (himc_xml_has(dashes, "type", "stop") && r->line[line - 1]) {
-        add_sign(r, beat, MUSIC_GLISS_END, 0);
-        m->signs[m->sign_count - 1].line = line;
-        r->line[line - 1] = false;
-    }
-    for (int i = first; i < m->sign_count && himc_xml_has(dashes, "type", "start"); i++)
-        if (m->signs[i].meaning == MUSIC_TUNING || m->signs[i].meaning == MUSIC_GLISS) {
-            m->signs[i].meaning = MUSIC_GLISS;
-            m->signs[i].line = line;
-            r->line[line - 1] = true;
-        }
-}
-
-// a picture of mallets
-static void read_percussion(reader *r, const xml_node *percussion, double beat)
-{
-    static const char *const materials[] = {"soft", "medium", "hard", "wood"};
-    const xml_node *stick = himc_xml_child(percussion, "stick");
-    for (int i = 0; i < 4; i++)
-        if (strcmp(himc_xml_text(stick, "stick-material"), materials[i]) == 0)
-            add_sign(r, beat, MUSIC_MALLET, i);
-}
-
-// `before`: words before it in one sign, "più"
-static bool read_dynamics(reader *r, const xml_node *dynamics, double beat, const char *before)
-{
-    bool found = false;
-    for (const xml_node *d = dynamics->child; d; d = d->next) {
-        music_meaning meaning;
-        double value;
-        const char *name = himc_xml_is(d, "other-dynamics") ? d->text : d->name;
-        char both[80];
-        himc_format(both, sizeof both, "%.40s %.30s", before, name);
-        bool words = himc_music_words(both, 1, &meaning, &value) == 1 &&
-                     (meaning == MUSIC_DYNAMIC || meaning == MUSIC_LOUDER);
-        if (words || himc_music_dynamic(name, &meaning, &value)) {
-            add_sign(r, beat, meaning, value);
-            found = true;
-        }
-    }
-    return found;
-}
-
-static void read_direction(reader *r, const xml_node *direction, bool own)
-{
-    const xml_node *offset = himc_xml_child(direction, "offset"); // it may be of the print alone
-    double by = himc_xml_has(offset, "sound", "no") ? 0 : himc_xml_number(direction, "offset", 0);
-    double beat = fmax(r->at + by / r->divisions, 0);
-    const xml_node *sound = himc_xml_child(direction, "sound");
-    music_bar *bar = &r->music->bars[r->bar];
-    bool dynamic = false, tempo = himc_xml_attribute(sound, "tempo")[0];
-    bool jumps = false;
-    static const char *const jump[] = {"dacapo", "dalsegno", "tocoda", "fine", "coda", "segno"};
-    for (int i = 0; i < 6; i++)
-        jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
-    const int first = r->music->sign_count;
-    const char *before = "";
-    r->lane = lane_of(direction);
-    const xml_node *type = himc_xml_child(direction, "direction-type");
-    for (; type; type = himc_xml_next(type))
-        for (const xml_node *d = type->child; d; d = d->next) {
-            if (himc_xml_is(d, "words"))
-                dynamic |= read_words(r, d, beat, own, jumps);
-            else if (himc_xml_is(d, "metronome") && !tempo)
-                read_metronome(r, d, beat);
-            else if (himc_xml_is(d, "segno") && !jumps)
-                bar->segno = true;
-            else if (himc_xml_is(d, "coda") && !jumps)
-                bar->coda = true;
-            else if (own && himc_xml_is(d, "dynamics"))
-                dynamic |= read_dynamics(r, d, beat, before);
-            else if (own && himc_xml_is(d, "wedge"))
-                read_wedge(r, d, beat);
-            else if (own && himc_xml_is(d, "percussion"))
-                read_percussion(r, d, beat);
-            else if (own && (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket")))
-                read_line(r, d, beat, first);
-            else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
-                add_sign(r, beat, MUSIC_DAMP, 0);
-            before = himc_xml_is(d, "words") ? d->text : "";
-        }
-    read_sound(r, sound, beat, own && !dynamic);
-    r->lane = 0;
-}
-
-static void read_barline(reader *r, const xml_node *barline)
+static void read_barline(music_reader *r, const xml_node *barline)
 {
     music_bar *bar = &r->music->bars[r->bar];
     const xml_node *repeat = himc_xml_child(barline, "repeat"),
                    *ending = himc_xml_child(barline, "ending");
+    if (himc_xml_child(barline, "fermata") && r->tail_end > 0)
+        hold_tail(r);
+    if (repeat && himc_xml_has(barline, "location", "middle") && r->at > 0) {
+        bar->split = r->at;
+        bar->split_on |= himc_xml_has(repeat, "direction", "forward");
+        bar->split_back |= himc_xml_has(repeat, "direction", "backward");
+        return;
+    }
     if (himc_xml_has(repeat, "direction", "forward"))
         bar->forward = true;
     if (himc_xml_has(repeat, "direction", "backward")) {
@@ -356,7 +110,7 @@ static himc_ornament kind_of(const char *text)
     return kind >= HIMC_ROLL_SINGLE ? kind : HIMC_PLAIN;
 }
 
-static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
+static void read_ornaments(music_reader *r, music_note *n, const xml_node *ornaments)
 {
     for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
         if (himc_xml_is(o, "trill-mark") || himc_xml_is(o, "wavy-line")) {
@@ -408,7 +162,7 @@ static int hand_of(const char *text)
     return 1 + (strchr("RrdD", *text) ? HIMC_RIGHT : HIMC_LEFT);
 }
 
-static void read_articulations(reader *r, music_note *n, const xml_node *articulations)
+static void read_articulations(music_reader *r, music_note *n, const xml_node *articulations)
 {
     for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
         bool other = himc_xml_is(a, "other-articulation");
@@ -435,7 +189,7 @@ static void read_articulations(reader *r, music_note *n, const xml_node *articul
     }
 }
 
-static void read_technical(reader *r, music_note *n, const xml_node *technical)
+static void read_technical(music_reader *r, music_note *n, const xml_node *technical)
 {
     for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next) {
         bool open = himc_xml_is(t, "open") || himc_xml_is(t, "open-string");
@@ -450,7 +204,7 @@ static void read_technical(reader *r, music_note *n, const xml_node *technical)
 }
 
 // semitones from a note to the upper note of its trill, by the key or a sign above it
-static int find_upper(const reader *r, const xml_node *note, const xml_node *ornaments)
+static int find_upper(const music_reader *r, const xml_node *note, const xml_node *ornaments)
 {
     static const char letters[] = "CDEFGAB", sharps[] = "FCGDAEB";
     static const int steps[] = {2, 2, 1, 2, 2, 2, 1};
@@ -470,7 +224,7 @@ static int find_upper(const reader *r, const xml_node *note, const xml_node *orn
     return up < 1 ? 1 : up > 3 ? 3 : up;
 }
 
-static void read_notations(reader *r, music_note *n, const xml_node *note,
+static void read_notations(music_reader *r, music_note *n, const xml_node *note,
                            const xml_node *notations)
 {
     n->upper += find_upper(r, note, himc_xml_child(notations, "ornaments"));
@@ -488,11 +242,11 @@ static void read_notations(reader *r, music_note *n, const xml_node *note,
     const xml_node *dynamics = himc_xml_child(notations, "dynamics");
     r->lane = n->lane;
     if (dynamics)
-        read_dynamics(r, dynamics, n->at.beat, "");
+        himc_music_dynamics(r, dynamics, n->at.beat, "");
     r->lane = 0;
 }
 
-static bool read_key(reader *r, const xml_node *note, music_note *n)
+static bool read_key(music_reader *r, const xml_node *note, music_note *n)
 {
     const music_instrument *of = himc_music_instrument_of(&r->instruments, note);
     const xml_node *pitch = himc_xml_child(note, "pitch");
@@ -533,18 +287,36 @@ static double read_ratio(const xml_node *tuplet)
     return actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
 }
 
-static void add_note(reader *r, const xml_node *note, double beat, double length)
+// of a row of hands that words have, 0: none is left; only notes of one lane are beside it
+static int next_hand(music_reader *r, int lane)
+{
+    if (r->hand == r->hand_count || (r->hand > 0 && r->hand_lane != lane))
+        return 0;
+    r->hand_lane = lane;
+    return r->hands[r->hand++];
+}
+
+static void read_ties(music_note *n, const xml_node *note)
+{
+    for (const xml_node *t = himc_xml_child(note, "tie"); t; t = himc_xml_next(t)) {
+        n->tied_on |= himc_xml_has(t, "type", "start");
+        n->tied_back |= himc_xml_has(t, "type", "stop");
+        n->ring |= himc_xml_has(t, "type", "let-ring");
+    }
+}
+
+static void add_note(music_reader *r, const xml_node *note, double beat, double length)
 {
     static const char *const types[] = {"eighth", "16th", "32nd", "64th", "128th"};
     music *m = r->music;
     music_note n = {.at = {beat, r->bar, r->part, m->note_count},
                     .length = length,
                     .voice = atoi(himc_xml_text(note, "voice")),
-                    .lane = lane_of(note),
+                    .lane = himc_music_lane(note),
                     .grace = himc_xml_child(note, "grace") != NULL,
                     .hidden = himc_xml_has(note, "print-object", "no"),
                     .spot = spot_of(himc_xml_text(note, "notehead")),
-                    .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),
+                    .ghost = himc_music_yes(himc_xml_child(note, "notehead"), "parentheses"),
                     .ratio = 1};
     bool chord = himc_xml_child(note, "chord");
     r->head = chord ? r->head : -1;
@@ -552,6 +324,10 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     if (himc_xml_child(note, "rest") ||
         (of->choice == MIDI_ANY && (!himc_xml_child(note, "unpitched") || !of->name[0])))
         return;
+    if (strcmp(himc_xml_text(note, "notehead"), "slash") == 0) {
+        himc_music_omit(m, MUSIC_SLASHES, r->bar);
+        return;
+    }
     if (himc_xml_child(note, "cue")) { // silent; one that is small alone is not, by the standard
         himc_music_omit(m, MUSIC_CUES, r->bar);
         return;
@@ -570,11 +346,8 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
             n.flags = i + 1;
     n.ratio = read_ratio(himc_xml_child(note, "time-modification"));
-    for (const xml_node *t = himc_xml_child(note, "tie"); t; t = himc_xml_next(t)) {
-        n.tied_on |= himc_xml_has(t, "type", "start");
-        n.tied_back |= himc_xml_has(t, "type", "stop");
-        n.ring |= himc_xml_has(t, "type", "let-ring");
-    }
+    read_ties(&n, note);
+    n.hand = chord || n.grace || n.tied_back ? 0 : next_hand(r, n.lane);
     for (const xml_node *l = himc_xml_child(note, "lyric"); l; l = himc_xml_next(l))
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
@@ -596,24 +369,30 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         m->notes[m->note_count++] = n;
 }
 
-static void read_note(reader *r, const xml_node *note)
+static void read_note(music_reader *r, const xml_node *note)
 {
     bool grace = himc_xml_child(note, "grace"), chord = himc_xml_child(note, "chord");
     double length = grace ? 0 : himc_xml_number(note, "duration", 0) / r->divisions;
     length = length >= 0 && length < 1000 ? length : 0;
     double beat = chord ? r->last : r->at;
-    add_note(r, note, beat, length);
+    r->slashes |= r->slashed;
+    if (!r->slashed)
+        add_note(r, note, beat, length);
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
         if (himc_xml_child(t, "fermata") && length > 0)
-            add_sign(r, beat, MUSIC_FERMATA, length);
+            himc_music_sign(r, beat, MUSIC_FERMATA, length);
     if (!chord)
         r->last = r->at;
+    if (beat + length > r->tail_end - SAME && length > 0) {
+        r->tail = fabs(beat + length - r->tail_end) < SAME ? fmax(r->tail, beat) : beat;
+        r->tail_end = beat + length;
+    }
     if (!chord && !grace)
         r->at += length;
     r->end = fmax(r->end, r->at);
 }
 
-static void read_attributes(reader *r, const xml_node *attributes)
+static void read_attributes(music_reader *r, const xml_node *attributes)
 {
     double divisions = himc_xml_number(attributes, "divisions", r->divisions);
     r->divisions = divisions > 0 && divisions < 1e6 ? divisions : r->divisions;
@@ -624,23 +403,37 @@ static void read_attributes(reader *r, const xml_node *attributes)
                     12 * himc_xml_number(transpose, "octave-change", 0);
         r->transpose = fabs(by) < 128 ? (int)by : 0;
     }
-    const xml_node *again =
-        himc_xml_child(himc_xml_child(attributes, "measure-style"), "measure-repeat");
-    if (again)
-        r->repeated = himc_xml_has(again, "type", "start") ? atoi(again->text) : 0;
+    const xml_node *style = himc_xml_child(attributes, "measure-style");
+    for (; style; style = himc_xml_next(style)) {
+        const xml_node *s = style->child;
+        bool start = himc_xml_has(s, "type", "start");
+        if (himc_xml_is(s, "measure-repeat"))
+            r->repeated = start ? atoi(s->text) : 0;
+        else if (himc_xml_is(s, "slash") || himc_xml_is(s, "beat-repeat"))
+            r->slashed = start;
+    }
     himc_music_instruments_attributes(&r->instruments, attributes);
     const xml_node *time = himc_xml_child(attributes, "time");
-    double beats = 0;
-    for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
-        beats += strtod(n, NULL);
-        n = strchr(n, '+');
-        n = n ? n + 1 : NULL;
+    double beats = 0, length = 0, unit = 1;
+    for (const xml_node *t = time ? time->child : NULL; t; t = t->next) { // 3/8 + 2/4, "3+2"
+        for (const char *n = himc_xml_is(t, "beats") ? t->text : NULL; n && *n;) {
+            beats += strtod(n, NULL);
+            n = strchr(n, '+');
+            n = n ? n + 1 : NULL;
+        }
+        if (!himc_xml_is(t, "beat-type"))
+            continue;
+        double type = strtod(t->text, NULL);
+        if (!(beats > 0 && beats < 1000 && type >= 1 && type <= 64))
+            return;
+        length += 4 * beats / type;
+        unit = fmax(unit, type);
+        beats = 0;
     }
-    double unit = himc_xml_number(time, "beat-type", 4);
-    if (!(beats > 0 && beats < 1000 && unit >= 1 && unit <= 64))
+    if (!(length > 0))
         return;
-    r->time = 4 * beats / unit;
-    r->beats = (int)lround(beats);
+    r->time = length;
+    r->beats = (int)lround(length * unit / 4);
     r->unit = (int)lround(unit);
 }
 
@@ -654,7 +447,7 @@ static void read_number(music_bar *bar, const xml_node *measure)
 }
 
 // the notes of the bar that a sign repeats, if this one has none of its own
-static void repeat_bar(reader *r)
+static void repeat_bar(music_reader *r)
 {
     music *m = r->music;
     const int bar = r->bar - r->repeated, end = m->note_count;
@@ -677,7 +470,7 @@ static void repeat_bar(reader *r)
     }
 }
 
-static void read_measure(reader *r, const xml_node *measure)
+static void read_measure(music_reader *r, const xml_node *measure)
 {
     music_bar *bar = &r->music->bars[r->bar];
     read_number(bar, measure);
@@ -685,7 +478,8 @@ static void read_measure(reader *r, const xml_node *measure)
     for (int i = 0; i < r->instruments.count; i++)
         own |= r->instruments.row[i].choice != MIDI_ANY;
     bool sounds = false;
-    r->at = r->last = r->end = 0;
+    r->at = r->last = r->end = r->tail = r->tail_end = 0;
+    r->slashes = false;
     for (const xml_node *n = measure->child; n; n = n->next) {
         double duration = himc_xml_number(n, "duration", 0) / r->divisions;
         sounds |= himc_xml_child(n, "pitch") || himc_xml_child(n, "unpitched");
@@ -698,13 +492,15 @@ static void read_measure(reader *r, const xml_node *measure)
         else if (himc_xml_is(n, "attributes"))
             read_attributes(r, n);
         else if (himc_xml_is(n, "direction"))
-            read_direction(r, n, own);
+            himc_music_direction(r, n, own);
         else if (himc_xml_is(n, "sound"))
-            read_sound(r, n, r->at, own);
+            himc_music_sound(r, n, r->at, own);
         else if (himc_xml_is(n, "barline"))
             read_barline(r, n);
         r->end = fmax(r->end, r->at);
     }
+    if (r->slashes && own)
+        himc_music_omit(r->music, MUSIC_SLASHES, r->bar);
     if (r->repeated > 0 && r->repeated <= r->bar)
         repeat_bar(r);
     if (bar->length == 0 && r->end == 0)
@@ -719,16 +515,17 @@ static void read_measure(reader *r, const xml_node *measure)
     bar->unit = r->unit;
 }
 
-static bool read_part(reader *r, const xml_node *part)
+static bool read_part(music_reader *r, const xml_node *part)
 {
     music *m = r->music;
     r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
-    const int first = m->note_count;
+    r->first = m->note_count;
     himc_music_instruments_read(&r->instruments, r->list, part);
     r->divisions = 1;
-    r->transpose = r->wavy = r->repeated = 0;
+    r->transpose = r->wavy = r->repeated = r->hand = r->hand_count = 0;
+    r->slashed = false;
     r->time = r->beats = r->unit = 4;
     r->bar = 0;
     r->head = -1;
@@ -744,11 +541,11 @@ static bool read_part(reader *r, const xml_node *part)
         }
         read_measure(r, measure);
     }
-    himc_music_choose_bass_drum(&r->instruments, m, first);
+    himc_music_choose_bass_drum(&r->instruments, m, r->first);
     return !r->failed;
 }
 
-static bool read_root(reader *r, const xml_node *root)
+static bool read_root(music_reader *r, const xml_node *root)
 {
     if (himc_xml_is(root, "score-timewise"))
         return himc_error_set(r->error, "MusicXML by time: export it as score-partwise");
@@ -759,6 +556,15 @@ static bool read_root(reader *r, const xml_node *root)
     for (const xml_node *p = himc_xml_child(root, "part"); p; p = himc_xml_next(p), r->part++)
         if (!read_part(r, p))
             return false;
+    r->lane = 0;
+    const int parts = r->part;
+    for (r->bar = 0; r->bar < r->music->bar_count; r->bar++) {
+        const music_bar *bar = &r->music->bars[r->bar];
+        for (r->part = 0; r->part < parts && bar->hold > 0; r->part++)
+            himc_music_sign(r, fmax(bar->length - bar->hold, 0), MUSIC_FERMATA, bar->hold);
+    }
+    if (r->failed)
+        return false;
     return r->music->bar_count > 0 || himc_error_set(r->error, "a score without a bar");
 }
 
@@ -782,10 +588,14 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                                "accents are not played: no stroke begins there", 0, ""},
             [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",
                                "signs of notes are not played: strokes have no way for them", 0,
-                               ""}}};
+                               ""},
+            [MUSIC_PEDALS] = {"pedal is not played: the instrument has none",
+                              "pedals are not played: the instrument has none", 0, ""},
+            [MUSIC_SLASHES] = {"slash that stands for notes is not played",
+                               "slashes that stand for notes are not played", 0, ""}}};
     if (!himc_xml_read(&document, bytes, size, unused, error))
         return false;
-    reader r = {.music = m, .error = error};
+    music_reader r = {.music = m, .error = error};
     bool good = read_root(&r, document.root);
     himc_xml_free(&document);
     if (!good)

@@ -637,6 +637,12 @@ static void take_signs(shaper *s, double beat, midi_choice choice, int next)
         case MUSIC_FERMATA: s->held = sign->at.beat + sign->value; break;
         case MUSIC_MEASURED: says->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, kind); break;
+        case MUSIC_PEDAL:
+            if (kind == MIDI_VIBRAPHONE || (kind == MIDI_ANY && s->kinds >> MIDI_VIBRAPHONE & 1))
+                add_order(s, MIDI_PEDAL, sign, MIDI_VIBRAPHONE);
+            else
+                himc_music_omit(s->music, MUSIC_PEDALS, sign->at.bar);
+            break;
         case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, kind); break;
         case MUSIC_WIRES: add_order(s, MIDI_WIRES, sign, kind); break;
         case MUSIC_TUNING:

@@ -77,6 +77,7 @@ static double add_ramp(map *to, const music *m, int i, double bpm)
 static bool add_signs(map *to, const music *m)
 {
     double bpm = USUAL_BPM, first = 0, before = 0; // now, the first, before the last ramps
+    double begin = 0;                              // beat of the first
     double numbered = -1, shared = -1, ramp = -1;  // beats of the last number, share and ramp
     bool ramps = false;
     for (int i = 0; i < m->sign_count; i++) {
@@ -91,7 +92,7 @@ static bool add_signs(map *to, const music *m)
             bpm = himc_midi_bpm(to->tempi, to->count, s->value + SAME);
         } else if (s->meaning == MUSIC_TEMPO_SHARE && s->at.beat > numbered + SAME &&
                    s->at.beat > shared + SAME) {
-            shared = s->at.beat; // also where all parts say it
+            shared = s->value == 1 ? shared : s->at.beat; // also where all parts say it
             bpm *= s->value;
         } else if (s->meaning == MUSIC_TEMPO_BACK && s->at.beat > numbered + SAME) {
             bpm = s->value > 0 && first > 0 ? first : before > 0 ? before : bpm;
@@ -105,7 +106,10 @@ static bool add_signs(map *to, const music *m)
         } else {
             continue;
         }
-        first = first > 0 ? first : bpm;
+        if (first == 0 || s->at.beat < begin + SAME) { // a word, then its number
+            first = bpm;
+            begin = s->at.beat;
+        }
         ramps = false;
         if (s->meaning != MUSIC_TEMPO_BACK && now != bpm)
             before = 0;
