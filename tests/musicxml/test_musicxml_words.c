@@ -186,6 +186,8 @@ static void test_a_metronome_mark_in_words_is_the_tempo(void)
         {"\xEE\xB2\xA5 = 66", 66},
         {"♩ = ♪", 60}, // of 120
         // these are none
+        {"♪♪ = ♩♪", 120},
+        {"♪ ♪ = ♩ ♪", 120},
         {"ca. 20 sec.", 120},
         {"Solo 72", 120},
         {"the = 72", 120},
@@ -427,6 +429,8 @@ static void test_brackets_and_sticks_do_not_hide_an_instrument(void)
     expect_change("change to snare drum with brushes", "snare");
     expect_change("Sn. Dr.", "snare");
     expect_change("Tamb.", "tambourine");
+    expect_change("Kleine Trommel", "snare");
+    expect_change("Large Sus. Cymbal", "crash");
     expect_change("Tom (high)", "high-tom");
     // what is not built is told by its name
     expect_change("Whip", "bass-drum");

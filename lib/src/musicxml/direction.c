@@ -144,6 +144,7 @@ static bool read_words(music_reader *r, const directed *by)
         if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
             himc_music_sign(r, beat, meaning[i], value[i]);
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
+        r->hand_count = meaning[i] == MUSIC_HAND ? r->hand : r->hand_count;
     }
     const int rows = r->instruments.count;
     if (own)
@@ -253,10 +254,11 @@ bool himc_music_dynamics(music_reader *r, const xml_node *dynamics, double beat,
         const char *name = himc_xml_is(d, "other-dynamics") ? d->text : d->name;
         char both[80];
         himc_format(both, sizeof both, "%.40s %.30s", before, name);
-        bool words = himc_music_words(both, 1, &meaning, &value) == 1 &&
+        bool words = himc_music_words(before, 1, &meaning, &value) == 0 && // "più"
+                     himc_music_words(both, 1, &meaning, &value) == 1 &&
                      (meaning == MUSIC_DYNAMIC || meaning == MUSIC_LOUDER);
         if (words || himc_music_dynamic(name, &meaning, &value)) {
-            music_sign *last = found ? &m->signs[m->sign_count - 1] : NULL;
+            music_sign *last = found && !r->failed ? &m->signs[m->sign_count - 1] : NULL;
             bool attack = last && last->meaning == MUSIC_ATTACK,
                  falls = last && last->meaning == MUSIC_DYNAMIC && last->value > value;
             found = true;

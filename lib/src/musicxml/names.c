@@ -406,6 +406,14 @@ size_t himc_music_named(const char *words, size_t *begin)
     return length;
 }
 
+static size_t begins_with_name(const char *at)
+{
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
+        length = begins_with(at, instruments[i].words);
+    return length;
+}
+
 midi_choice himc_music_change(const char *words, int *key, bool *bare)
 {
     static const char tells[] =
@@ -436,10 +444,10 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
             return MIDI_ANY;
     if (!*bare)
         return choice;
-    while (is_beside(at)) // "high wood block"
-        at += strcspn(at, " "), at += strspn(at, " ");
-    for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
-        length = begins_with(at, instruments[i].words);
+    while ((length = begins_with_name(at)) == 0 && is_beside(at)) { // "high wood block"
+        at += strcspn(at, " ");
+        at += strspn(at, " ");
+    }
     for (at += length + strcspn(at + length, " "); *at; at += strcspn(at, " ")) {
         at += strspn(at, " (");
         if (*at && begins_with(at, tails) == 0 && !is_beside(at) &&

@@ -14,42 +14,62 @@
 #define MOST_PLAYED 60000 // bars; chosen: a day of music
 #define SAME 1e-6         // (beats)
 
-static void split_place(music_place *at, int bar, double beat)
+// the bars `to` which each of a music goes; one with a repeat in it is two
+static void split_place(const music *m, const int *to, music_place *at)
 {
-    bool later = at->bar > bar || (at->bar == bar && at->beat > beat - SAME);
-    at->beat -= later && at->bar == bar ? beat : 0;
-    at->bar += later;
+    const music_bar *bar = &m->bars[at->bar];
+    bool later = bar->split > 0 && at->beat > bar->split - SAME;
+    at->beat -= later ? bar->split : 0;
+    at->bar = to[at->bar] + later;
 }
 
-// a bar with a repeat in it is two
+static void split_bar(const music_bar *whole, music_bar *half)
+{
+    music_bar *a = half, *b = half + 1;
+    *a = *b = *whole;
+    a->length = whole->split;
+    b->length -= whole->split;
+    a->backward = whole->split_back;
+    a->times = 2;
+    a->fine = a->to_coda = a->da_capo = a->dal_segno = false;
+    a->endings &= ~1u;
+    b->forward = whole->split_on;
+    b->segno = b->coda = false;
+    b->endings &= 1u;
+}
+
 static bool split_bars(music *m, himc_error *error)
 {
-    for (int k = 0; k < m->bar_count; k++) {
-        const music_bar whole = m->bars[k];
-        if (whole.split <= 0 || whole.split >= whole.length - SAME) {
-            m->bars[k].backward |= whole.split_back;
-            continue;
-        }
-        if (!himc_array_grow(&m->bars, m->bar_count, &m->bar_room, sizeof *m->bars, error))
-            return false;
-        memmove(&m->bars[k + 1], &m->bars[k], (size_t)(m->bar_count++ - k) * sizeof *m->bars);
-        music_bar *a = &m->bars[k], *b = a + 1;
-        a->length = whole.split;
-        b->length -= whole.split;
-        a->backward = whole.split_back;
-        a->fine = a->to_coda = a->da_capo = a->dal_segno = false;
-        a->endings &= ~1u;
-        a->split = b->split = 0;
-        a->split_back = b->split_back = false;
-        a->times = whole.split_back ? 2 : whole.times;
-        b->forward = whole.split_on;
-        b->segno = b->coda = false;
-        b->endings &= 1u;
-        for (int i = 0; i < m->note_count; i++)
-            split_place(&m->notes[i].at, k, whole.split);
-        for (int i = 0; i < m->sign_count; i++)
-            split_place(&m->signs[i].at, k, whole.split);
+    int count = 0;
+    int *to = malloc(((size_t)m->bar_count + 1) * sizeof *to);
+    music_bar *made = malloc((2 * (size_t)m->bar_count + 1) * sizeof *made);
+    if (!to || !made) {
+        free(to);
+        free(made);
+        return himc_error_set(error, "out of memory for %d bars", m->bar_count);
     }
+    for (int k = 0; k < m->bar_count; k++) {
+        music_bar *bar = &m->bars[k];
+        to[k] = count;
+        if (bar->split >= bar->length - SAME) { // at its end
+            bar->backward |= bar->split_back;
+            bar->split = 0;
+        }
+        if (bar->split > 0)
+            split_bar(bar, &made[count++]);
+        else
+            made[count] = *bar;
+        count++;
+    }
+    for (int i = 0; i < m->note_count; i++)
+        split_place(m, to, &m->notes[i].at);
+    for (int i = 0; i < m->sign_count; i++)
+        split_place(m, to, &m->signs[i].at);
+    free(to);
+    free(m->bars);
+    m->bars = made;
+    m->bar_count = count;
+    m->bar_room = count;
     return true;
 }
 

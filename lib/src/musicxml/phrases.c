@@ -99,6 +99,15 @@ static double read_number(const char *at)
     return number >= LEAST_BPM && number <= MOST_BPM ? number : 0;
 }
 
+// true if one more note stands behind or before a place
+static bool is_sign(const char *text, const char *at, bool behind)
+{
+    while (behind ? *at == ' ' : at > text && at[-1] == ' ')
+        at += behind ? 1 : -1;
+    unsigned char c = (unsigned char)(behind ? *at : at > text ? at[-1] : ' ');
+    return c >= 0x80;
+}
+
 bool himc_music_metronome(const char *text, music_meaning *meaning, double *value)
 {
     static const char *const about[] = {"m.m.", "mm", "ca.", "c.", "circa"};
@@ -112,7 +121,11 @@ bool himc_music_metronome(const char *text, music_meaning *meaning, double *valu
         bool equal = beats > 0 && (skip(&p, "=") || skip(&p, "≈"));
         skip_spaces(&p);
         if (equal || (beats > 0 && !letter)) {
-            double number = read_number(p), other = equal && number == 0 ? read_note(&p) : 0;
+            double number = read_number(p), other = 0;
+            if (equal && number == 0 && !is_sign(text, at, false)) {
+                other = read_note(&p);
+                other = is_sign(text, p, true) ? 0 : other; // "♪♪ = ♩♪" is a swing
+            }
             *meaning = other > 0 ? MUSIC_TEMPO_SHARE : MUSIC_TEMPO;
             *value = other > 0 ? other / beats : beats * number;
             if (*value > 0)

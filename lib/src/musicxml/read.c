@@ -557,10 +557,10 @@ static bool read_root(music_reader *r, const xml_node *root)
         if (!read_part(r, p))
             return false;
     r->lane = 0;
-    const int parts = r->part;
+    r->part = 0; // a tempo is of all
     for (r->bar = 0; r->bar < r->music->bar_count; r->bar++) {
         const music_bar *bar = &r->music->bars[r->bar];
-        for (r->part = 0; r->part < parts && bar->hold > 0; r->part++)
+        if (bar->hold > 0)
             himc_music_sign(r, fmax(bar->length - bar->hold, 0), MUSIC_FERMATA, bar->hold);
     }
     if (r->failed)

@@ -662,7 +662,7 @@ static bool is_roll(const shaper *s, const music_note *n, double *unit)
         return true;
     if (n->tremolo != MUSIC_MARKS)
         return false;
-    bool held = n->at.beat < s->held - SAME; // what is held is not counted
+    bool held = n->held || n->at.beat < s->held - SAME; // what is held is not counted
     int measured = s->says[n->choice].measured;
     if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && (measured == 0 || held)))
         return true;
