@@ -554,6 +554,14 @@ static void test_a_pedal_waits_for_the_end_of_a_long_note(void)
     TEST_ASSERT_TRUE_MESSAGE(beat >= 4 && beat < 12, made.text);
 }
 
+// found by the fuzzer: a gliss down to a pitch that no drum has
+static void test_a_gliss_far_beyond_a_drum_is_counted(void)
+{
+    load(HEAD PART("Timpani") BAR(1, FOUR C3(8, "") WORDS("gliss. C6 to D2") C3(8, "")) TAIL);
+    expect_text("1 word about tuning is not followed");
+    expect_text("2 of 2 notes for timpani are played");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -580,5 +588,6 @@ int main(void)
     RUN_TEST(test_words_of_staff_one_are_of_notes_without_a_staff);
     RUN_TEST(test_toms_of_a_kit_are_apart_where_they_are_written);
     RUN_TEST(test_a_pedal_waits_for_the_end_of_a_long_note);
+    RUN_TEST(test_a_gliss_far_beyond_a_drum_is_counted);
     return UNITY_END();
 }

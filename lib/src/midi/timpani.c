@@ -72,7 +72,8 @@ static int find_ordered(const midi_state *state, const midi_order *o, int *key)
     for (int d = 0; d < DRUMS; d++) {
         int now = state->key[d];
         int to = now < 0 ? -1 : octaves ? now + o->value - from : nearest_pitch(d, now, o->value);
-        if (to < 0 || (from != 12 && now % 12 != from % 12))
+        if (to < timpano[d].low - 12 || to > timpano[d].high + 12 ||
+            (from != 12 && now % 12 != from % 12))
             continue;
         if (from == 12 && now % 12 == o->value % 12)
             return -1; // a drum has it
