@@ -61,6 +61,7 @@ static const double early_from[LIKELY_WINDOWS] = {0.03, 0.1};
 static const double splits[] = {0, 0.5, 1, 1.5, 2};
 
 typedef struct band {
+    const partials_sound *sound;
     double centre, width; // (Hz)
     int step, half;       // decimation, filter
     double *tap;          // (2 half + 1) filter, turning by the centre: real parts ...
@@ -74,8 +75,10 @@ typedef struct pole {
     double frequency, decay, level;
 } pole;
 
-static bool band_open(band *b, double centre, double width, const partials_sound *sound)
+static bool band_open(band *b, double centre, double width, const partials_sound *all)
 {
+    const partials_sound *sound = centre + (0.5 + TRANSITION) * width < PARTIALS_LOW ? all->low : all;
+    b->sound = sound;
     b->width = width;
     b->centre = centre;
     double transition = TRANSITION * b->width, stop = 0.5 * (b->width + transition), sum = 0;
@@ -119,8 +122,9 @@ static void band_sample(const band *b, const double *x, double angle, double out
 }
 
 // fills z from a track's sample `from` on; false if the tracks are too short
-static bool band_fill(band *b, const partials_sound *sound, size_t from, int span, int least)
+static bool band_fill(band *b, size_t from, int span, int least)
 {
+    const partials_sound *sound = b->sound;
     double turn = -2 * HIMC_PI * b->centre / sound->rate;
     size_t shortest = sound->length[0];
     for (int i = 1; i < sound->tracks; i++)
@@ -139,13 +143,13 @@ static bool band_fill(band *b, const partials_sound *sound, size_t from, int spa
 }
 
 // the poles within the band's width whose sound decays
-static int find_poles(band *b, const partials_sound *sound, double start, int span, pole *out,
-                      himc_linear *outcome)
+static int find_poles(band *b, double start, int span, pole *out, himc_linear *outcome)
 {
+    const partials_sound *sound = b->sound;
     double p[2 * ORDER], c[2 * ORDER * PARTIALS_TRACKS], rate = sound->rate / b->step;
     int found = 0, kept = 0;
     size_t from = (size_t)(start * sound->rate) + (size_t)b->half;
-    if (!band_fill(b, sound, from, span, SPAN_LEAST))
+    if (!band_fill(b, from, span, SPAN_LEAST))
         return 0;
     int most = b->samples / 4 < ORDER ? b->samples / 4 : ORDER;
     *outcome = himc_linear_exponentials(b->samples, b->tracks, b->z, most, CLEAR, p, c, &found);
@@ -220,7 +224,7 @@ static bool find_in_band(const partials_sound *sound, double low, const windows 
     himc_linear outcome = band_open(&b, low + 0.5 * *width, *width, sound) ? HIMC_LINEAR_SOLVED
                                                                            : HIMC_LINEAR_NO_MEMORY;
     for (int w = 0; w < WINDOWS && outcome != HIMC_LINEAR_NO_MEMORY; w++)
-        count[w] = find_poles(&b, sound, set->first + w * set->next, set->span, found[w], &outcome);
+        count[w] = find_poles(&b, set->first + w * set->next, set->span, found[w], &outcome);
     band_close(&b);
     if (outcome == HIMC_LINEAR_NO_MEMORY)
         return himc_error_set(error, "out of memory");
@@ -403,13 +407,13 @@ bool partials_likely(const partials_sound *sound, double room, double frequency,
         band_close(&b);
         return himc_error_set(error, "out of memory");
     }
-    double rate = sound->rate / b.step;
+    double rate = b.sound->rate / b.step;
     double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
     memset(out, 0, sizeof *out * (size_t)(shifts * decays));
     for (int w = 0; w < LIKELY_WINDOWS; w++) {
         double start = (room > 0 ? late_from : early_from)[w];
-        size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
-        if (!band_fill(&b, sound, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
+        size_t from = (size_t)(start * b.sound->rate) + (size_t)b.half;
+        if (!band_fill(&b, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
         weigh(&b, rate, room);
         // the filter passes half of the band

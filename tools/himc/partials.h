@@ -30,7 +30,9 @@ typedef struct partials_sound {
     int tracks;
     double rate;  ///< (Hz), of all
     double noise; ///< before the onset (dB re the first .5 s), of the worst
+    struct partials_sound *low; ///< the same at a lower rate, up to PARTIALS_LOW
 } partials_sound;
+#define PARTIALS_LOW 1300.0 ///< (Hz) of a drum's partials
 
 typedef struct partials_list {
     partial row[PARTIALS_MOST]; ///< rising in frequency
@@ -49,6 +51,11 @@ void partials_sound_free(partials_sound *sound);
 /// All partials up to `highest` (Hz). False with the reason, without memory.
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
+
+/// Level (dB) at `count` frequencies up to PARTIALS_LOW (Hz) from `from` to `to` (s), of all channels
+/// together. False without memory.
+bool partials_levels(const partials_sound *sound, double from, double to, const double *frequency,
+                     int count, double *level);
 
 #define PARTIALS_LINES 1200.0 ///< (Hz) up to which lines are found
 /// Puts lines that fall evenly in the place of the poles about them, and drops the hall's.

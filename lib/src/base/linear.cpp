@@ -41,16 +41,22 @@ template <class work> himc_linear attempt(work solve)
 #endif
 }
 
-// the covariance of `lags` values in a row
+// the covariance of `lags` values in a row; along a diagonal one value comes and one goes, from the
+// later and softer ones on, so that no digits are lost
 complex_columns covariance(const signals &z, int lags)
 {
     complex_columns sum = complex_columns::Zero(lags, lags);
-    int places = (int)z.rows() - lags + 1;
+    int places = (int)z.rows() - lags + 1, last = lags - 1;
     for (int channel = 0; channel < z.cols(); channel++) {
-        complex_columns rows(lags, places);
-        for (int i = 0; i < lags; i++)
-            rows.row(i) = z.col(channel).segment(i, places).transpose();
-        sum.noalias() += rows * rows.adjoint();
+        auto x = z.col(channel);
+        for (int j = 0; j < lags; j++) {
+            std::complex<double> value = x.segment(j, places).dot(x.segment(last, places));
+            sum(last, j) += value;
+            for (int i = last - 1, k = j - 1; k >= 0; i--, k--) {
+                value += x[i] * std::conj(x[k]) - x[i + places] * std::conj(x[k + places]);
+                sum(i, k) += value;
+            }
+        }
     }
     return sum;
 }
