@@ -27,6 +27,8 @@
 #define LONGEST 15.0    // (s) of a drum; what rings longer is hum
 #define LOUD 40.0       // (dB) below the strongest a partial counts nothing
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
+#define LASTING 2.0     // partials that ring so much longer than the room are the drum's ...
+#define EXACT 0.0015    // ... and nearer to a mode (per frequency; counts half)
 #define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
 #define MISSING 10.0    // ... or it is less likely (dB)
 #define SHARP 0.001     // per frequency: a fine tuning
@@ -121,11 +123,31 @@ static void assign(const partials_list *partials, const fit_mode *modes, int cou
     }
 }
 
+// what of the partials that outlast the room is the drum's (dB): their frequencies are exact
+static double judge_lasting(const partials_list *partials, const fit_mode *modes, int count,
+                            const fit_drum *d)
+{
+    double score = 0;
+    for (int i = 0; i < partials->count; i++) {
+        const partial *p = &partials->row[i];
+        double most = 0;
+        for (int k = 0; k < count; k++) {
+            double apart = (p->frequency / modes[k].frequency - 1) / EXACT;
+            if (modes[k].m > 0 && modes[k].n <= 2)
+                most = fmax(most, 1 / (1 + apart * apart));
+        }
+        if (p->t60 > LASTING * partials->room && p->t60 < LONGEST &&
+            p->frequency > DOWN_TO * d->tune && p->frequency < FINE_UP_TO * d->tune)
+            score += most * worth(p);
+    }
+    return score;
+}
+
 // what of the clear partials is the drum's, less what is not and what is not there (dB)
 static double judge(const partials_list *partials, const fit_mode *modes, int count,
                     const fit_drum *d)
 {
-    double score = 0, loudest = strongest(partials);
+    double score = judge_lasting(partials, modes, count, d), loudest = strongest(partials);
     bool below = false;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
