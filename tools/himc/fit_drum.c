@@ -282,7 +282,7 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
         double sum[2 * FINE + 1] = {0}, step = round == 0 ? EARLY_STEP : FINE_STEP;
         int best = FINE;
         if (!add_tunings(sound, 0, step, d, sum, error) ||
-            (round > 0 && room > 0 && !add_tunings(sound, room, step, d, sum, error)))
+            (room > 0 && !add_tunings(sound, room, step, d, sum, error)))
             return false;
         for (int k = 0; k <= 2 * FINE; k++)
             best = sum[k] > sum[best] ? k : best;
