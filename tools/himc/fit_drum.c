@@ -59,7 +59,7 @@ static const struct {
 #define TUNED_WITHIN 0.002 // by one pair in a room that outlasts it; chosen, as in our room
 #define STRANGE 0.05       // part of pairs that tell something else; chosen
 #define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
-#define HELD 1.0           // ... and, in a room that outlasts it, so much more
+#define HELD 0.5           // ... and, in a room that outlasts it, so much more
 #define DECAYS_TRIED 49
 #define TRIED_MOST (2 * FINE + 1) // of tunings and decays
 #define DECAY_STEP 0.05           // (ln)

@@ -51,10 +51,10 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
-// When a room has answered the onset (s), and before that, while it only echoes. Windows that
-// overlap share their weight.
+// When a room that answered the onset is soft (its T60; s at most), and before it answers, while it
+// only echoes (s). Windows that overlap share their weight.
 #define LIKELY_WINDOWS 2
-static const double late_from[LIKELY_WINDOWS] = {0.5, 1.0};
+static const double late_from[LIKELY_WINDOWS] = {1.2, 2.0};
 static const double early_from[LIKELY_WINDOWS] = {0.03, 0.1};
 
 // of a pair, per the usual one: each head is uneven in its own way
@@ -411,7 +411,7 @@ bool partials_likely(const partials_sound *sound, double room, double frequency,
     double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
     memset(out, 0, sizeof *out * (size_t)(shifts * decays));
     for (int w = 0; w < LIKELY_WINDOWS; w++) {
-        double start = (room > 0 ? late_from : early_from)[w];
+        double start = room > 0 ? late_from[w] * fmin(room, 1) : early_from[w];
         size_t from = (size_t)(start * b.sound->rate) + (size_t)b.half;
         if (!band_fill(&b, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
