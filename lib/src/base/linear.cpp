@@ -90,7 +90,11 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
     return attempt([=] {
         signals values(reinterpret_cast<const std::complex<double> *>(z), samples, channels);
         int lags = std::min(samples / 2, HIMC_LINEAR_LAGS);
-        Eigen::SelfAdjointEigenSolver<complex_columns> spaces(covariance(values, lags));
+        // the eigenvectors of the real tridiagonal matrix, and of these the signal's alone turned
+        // back, take half the time of a complex problem
+        Eigen::Tridiagonalization<complex_columns> three(covariance(values, lags));
+        Eigen::SelfAdjointEigenSolver<columns> spaces;
+        spaces.computeFromTridiagonal(three.diagonal(), three.subDiagonal());
         if (spaces.info() != Eigen::Success)
             return HIMC_LINEAR_UNSOLVED;
         double noise =
@@ -98,7 +102,8 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
         *found = std::min(most, (int)(spaces.eigenvalues().array() > clear * noise).count());
         if (*found == 0)
             return HIMC_LINEAR_SOLVED;
-        complex_vector poles = turns(spaces.eigenvectors().rightCols(*found));
+        columns signal = spaces.eigenvectors().rightCols(*found);
+        complex_vector poles = turns(three.matrixQ() * signal.cast<std::complex<double>>());
         if (poles.size() == 0)
             return HIMC_LINEAR_UNSOLVED;
         Eigen::Map<complex_vector>(reinterpret_cast<std::complex<double> *>(p), *found) = poles;
