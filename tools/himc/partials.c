@@ -28,6 +28,7 @@
 #define ORDER 30           // most poles in a band
 #define CLEAR 8.0          // eigenvalue over the noise's that counts; chosen
 #define T60_LEAST 0.04     // (s)
+#define EMPTY 3e-8         // power of a band with nothing in it, per the sound's (-75 dB)
 #define LEVEL_LEAST (-55.) // (dB)
 #define MERGED 1.25        // (Hz)
 #define DECAYS_DIFFER 0.35 // of ln T60
@@ -77,7 +78,8 @@ typedef struct pole {
 
 static bool band_open(band *b, double centre, double width, const partials_sound *all)
 {
-    const partials_sound *sound = centre + (0.5 + TRANSITION) * width < PARTIALS_LOW ? all->low : all;
+    const partials_sound *sound =
+        centre + (0.5 + TRANSITION) * width < PARTIALS_LOW ? all->low : all;
     b->sound = sound;
     b->width = width;
     b->centre = centre;
@@ -142,6 +144,19 @@ static bool band_fill(band *b, size_t from, int span, int least)
     return true;
 }
 
+// whether the band has nothing that would be kept: its mean power beside the sound's
+static bool is_empty(const band *b, size_t from)
+{
+    double power = 0, all = 0;
+    size_t length = (size_t)b->samples * (size_t)b->step;
+    for (int i = 0; i < 2 * b->samples * b->tracks; i++)
+        power += b->z[i] * b->z[i] / b->samples;
+    for (int i = 0; i < b->tracks; i++)
+        for (size_t n = from; n < from + length; n++)
+            all += b->sound->track[i][n] * b->sound->track[i][n] / (double)length;
+    return !(power > EMPTY * all);
+}
+
 // the poles within the band's width whose sound decays
 static int find_poles(band *b, double start, int span, pole *out, himc_linear *outcome)
 {
@@ -149,7 +164,7 @@ static int find_poles(band *b, double start, int span, pole *out, himc_linear *o
     double p[2 * ORDER], c[2 * ORDER * PARTIALS_TRACKS], rate = sound->rate / b->step;
     int found = 0, kept = 0;
     size_t from = (size_t)(start * sound->rate) + (size_t)b->half;
-    if (!band_fill(b, from, span, SPAN_LEAST))
+    if (!band_fill(b, from, span, SPAN_LEAST) || is_empty(b, from))
         return 0;
     int most = b->samples / 4 < ORDER ? b->samples / 4 : ORDER;
     *outcome = himc_linear_exponentials(b->samples, b->tracks, b->z, most, CLEAR, p, c, &found);

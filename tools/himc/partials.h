@@ -28,8 +28,8 @@ typedef struct partials_sound {
     double *track[PARTIALS_TRACKS]; ///< (length), their peak over the channels of a stroke is 1
     size_t length[PARTIALS_TRACKS];
     int tracks;
-    double rate;  ///< (Hz), of all
-    double noise; ///< before the onset (dB re the first .5 s), of the worst
+    double rate;                ///< (Hz), of all
+    double noise;               ///< before the onset (dB re the first .5 s), of the worst
     struct partials_sound *low; ///< the same at a lower rate, up to PARTIALS_LOW
 } partials_sound;
 #define PARTIALS_LOW 1300.0 ///< (Hz) of a drum's partials

@@ -131,7 +131,8 @@ static bool check(const stroke *s, double *noise, himc_error *error)
 // a track at a lower rate: what is above PARTIALS_LOW is filtered out as far as it would come below
 static double *thin(const double *x, size_t length, double rate, int step, size_t *left)
 {
-    double transition = rate / step - 2 * PARTIALS_LOW, turn = HIMC_PI / step; // stop: half the rate
+    double transition = rate / step - 2 * PARTIALS_LOW,
+           turn = HIMC_PI / step; // stop: half the rate
     long half = (long)(LOW_TAPS * rate / transition), end = (long)length;
     *left = (length + (size_t)step - 1) / (size_t)step;
     double *out = malloc(sizeof *out * *left), *tap = malloc(sizeof *tap * (size_t)(2 * half + 1));
