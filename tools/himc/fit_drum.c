@@ -263,8 +263,9 @@ static bool add_tunings(const partials_sound *sound, double room, double step, c
     for (int i = 0; i < count; i++) {
         for (int k = 0; k <= 2 * FINE; k++)
             shift[k] = step * (k - FINE) * pair[i].frequency;
-        if (!partials_likely(sound, room, pair[i].frequency, pair[i].apart, shift, 2 * FINE + 1,
-                             &pair[i].due, 1, likely, error))
+        if (!partials_likely(sound, room > 0 ? PARTIALS_LATE : PARTIALS_EARLY, room,
+                             pair[i].frequency, pair[i].apart, shift, 2 * FINE + 1, &pair[i].due, 1,
+                             likely, error))
             return false;
         double held = room * pair[i].due / log(1000); // by the room
         blur(likely, 2 * FINE + 1, TUNED_WITHIN * (room > 0 ? held * held : 1) / step);
@@ -303,8 +304,9 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
-        if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, &none, 1,
-                             decay, DECAYS_TRIED, likely[i], error))
+        if (!partials_likely(sound, partials->room > 0 ? PARTIALS_LAST : PARTIALS_EARLY,
+                             partials->room, pair[i].frequency, pair[i].apart, &none, 1, decay,
+                             DECAYS_TRIED, likely[i], error))
             return false;
         double held = partials->room * pair[i].due / log(1000); // by the room
         blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);

@@ -52,11 +52,10 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
-// When a room that answered the onset is soft (its T60; s at most), and before it answers, while it
-// only echoes (s). Windows that overlap share their weight.
+// (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of the
+// room, at most 1 s: its answer biases decays to its own, while tunings need what is left of a pair
 #define LIKELY_WINDOWS 2
-static const double late_from[LIKELY_WINDOWS] = {1.2, 2.0};
-static const double early_from[LIKELY_WINDOWS] = {0.03, 0.1};
+static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {1.2, 2.0}};
 
 // of a pair, per the usual one: each head is uneven in its own way
 static const double splits[] = {0, 0.5, 1, 1.5, 2};
@@ -413,9 +412,9 @@ static void weigh(band *b, double rate, double room)
         b->weight[n] = room > 0 ? fmin(most, pow(1e6, n / rate / room)) : 1;
 }
 
-bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
-                     const double *shift, int shifts, const double *decay, int decays, double *out,
-                     himc_error *error)
+bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
+                     double apart, const double *shift, int shifts, const double *decay, int decays,
+                     double *out, himc_error *error)
 {
     band b = {0};
     if (!band_open(&b, frequency, fmax(PAIR, 2 * apart), sound)) {
@@ -426,7 +425,7 @@ bool partials_likely(const partials_sound *sound, double room, double frequency,
     double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
     memset(out, 0, sizeof *out * (size_t)(shifts * decays));
     for (int w = 0; w < LIKELY_WINDOWS; w++) {
-        double start = room > 0 ? late_from[w] * fmin(room, 1) : early_from[w];
+        double start = from_onset[part][w] * (part == PARTIALS_LAST ? fmin(room, 1) : 1);
         size_t from = (size_t)(start * b.sound->rate) + (size_t)b.half;
         if (!band_fill(&b, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;

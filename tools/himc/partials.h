@@ -61,12 +61,16 @@ bool partials_levels(const partials_sound *sound, double from, double to, const 
 /// Puts lines that fall evenly in the place of the poles about them, and drops the hall's.
 void partials_lines(const partials_sound *sound, partials_list *list);
 
+/// Which part of a sound is compared: while a room only echoes the onset, once it has answered, and
+/// when its answer is soft.
+typedef enum partials_part { PARTIALS_EARLY, PARTIALS_LATE, PARTIALS_LAST } partials_part;
+
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
-/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s); 0: early.
-/// False with the reason, without memory.
-bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
-                     const double *shift, int shifts, const double *decay, int decays, double *out,
-                     himc_error *error);
+/// energy that least squares leave in a narrow band, in a `room` of that T60 (s), or 0. False with
+/// the reason, without memory.
+bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
+                     double apart, const double *shift, int shifts, const double *decay, int decays,
+                     double *out, himc_error *error);
 
 #endif
