@@ -52,8 +52,8 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
-// (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of the
-// room, at most 1 s: its answer biases decays to its own, while tunings need what is left of a pair
+// (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of
+// the room, at most 1 s: its answer biases decays, while tunings need what is left of a pair
 #define LIKELY_WINDOWS 2
 static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {1.2, 2.0}};
 
