@@ -210,7 +210,7 @@ def test_a_drum_plays_wherever_it_is_called():
     for name in (os.path.join(home, "sub"), away):
         os.makedirs(name)
     write_wave("my bars/bar.wav", rings(BAR))
-    good("fit", "bar.wav", "-o", "sub/rim.txt", where=home)
+    good("fit", "bar.wav", "-o", "sub/rim.txt", "--instrument", "modes", where=home)
     again = os.path.join(home, "sub/rim.txt")
     assert json.loads(good("render", again, "-o", path("again.wav"), "--json", where=away))["played"] == 1
     assert abs(max(read_modes(again, away)) / BAR[-1][0] - 1) < 0.001

@@ -110,7 +110,7 @@ static bool write_list(fit *f, const char *path, himc_error *error)
     char text[3 * HIMC_PATH_SIZE];
     himc_state_line line = himc_state_begin("instrument");
     double radius = f->timpano ? RADIUS_PER_INCH * f->drum.inches : FIT_LIST_RADIUS;
-    if (!fit_list(&f->sound, &f->found, radius, f->modes, &f->second_file, error))
+    if (!fit_list(&f->sound, &f->found, radius, f->modes, &f->second_file, &f->made, error))
         return false;
     // it is not there yet: its draft is, whose name goes on
     const cli_file *file = &f->second_file;
@@ -132,17 +132,10 @@ static bool write_list(fit *f, const char *path, himc_error *error)
     return cli_draft(&f->file, path, put, text, error);
 }
 
-static bool hear_again(fit *f, himc_error *error)
+static bool hear_drum(fit *f, himc_error *error)
 {
     const fit_drum *d = &f->drum;
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
-    if (f->list) {
-        if (!fit_list_hear(&f->second_file, rate, &f->again, error) ||
-            !partials_find(&f->again, FIT_LIST_HIGHEST, &f->made, error))
-            return false;
-        partials_lines(&f->again, &f->made);
-        return true;
-    }
     himc_drum *drum = fit_drum_make(d, d->mallet, rate, error);
     double x = -FIT_PLACE * RADIUS_PER_INCH * d->inches;
     bool good = drum && fit_hear(drum, x, fit_speeds[d->dynamic], SECONDS, &f->again, error);
@@ -191,7 +184,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
         return false;
     if (f->list)
         partials_lines(&f->sound, &f->found);
-    if (!(f->list ? write_list : write_drum)(f, out, error) || !hear_again(f, error) ||
+    if (!(f->list ? write_list(f, out, error) : write_drum(f, out, error) && hear_drum(f, error)) ||
         !cli_file_keep(&f->second_file, error) || !cli_file_keep(&f->file, error))
         return false;
     if (f->list && !kind)

@@ -29,44 +29,14 @@ static const struct {
              {6, 1, .6}, {1, 2, .7}, {2, 2, .7}, {3, 2, .5}};
 #define TEETH (int)(sizeof teeth / sizeof *teeth)
 
-// power of one frequency in a Hann window (Goertzel 1958)
-static double power_at(const double *x, size_t n, double turn)
-{
-    double c = 2 * cos(turn), one = 0, two = 0;
-    for (size_t i = 0; i < n; i++) {
-        double now = x[i] + c * one - two;
-        two = one;
-        one = now;
-    }
-    return one * one + two * two - c * one * two;
-}
-
-// level (dB) of all lines in one span of the sound, all channels
-static bool levels(const partials_sound *sound, double from, double to, double *out)
-{
-    size_t n = (size_t)((to - from) * sound->rate), start = (size_t)(from * sound->rate);
-    double *x = malloc(n * sizeof *x);
-    memset(out, 0, FIT_LINES * sizeof *out);
-    for (int t = 0; x && t < sound->tracks; t++) {
-        for (size_t i = 0; i < n; i++)
-            x[i] = start + i < sound->length[t]
-                       ? sound->track[t][start + i] * (1 - cos(2 * HIMC_PI * (double)i / (double)n))
-                       : 0;
-        for (int k = 0; k < FIT_LINES; k++)
-            out[k] += power_at(x, n, 2 * HIMC_PI * FIT_LOWEST * exp(FIT_FINE * k) / sound->rate);
-    }
-    for (int k = 0; k < FIT_LINES; k++)
-        out[k] = 10 * log10(out[k] + 1e-20);
-    free(x);
-    return x != NULL;
-}
-
 bool fit_spectrum_of(const partials_sound *sound, fit_spectrum *out, himc_error *error)
 {
-    static double raw[FIT_LINES], near[2 * AROUND + 1];
+    static double raw[FIT_LINES], frequency[FIT_LINES], near[2 * AROUND + 1];
     memset(out, 0, sizeof *out);
+    for (int k = 0; k < FIT_LINES; k++)
+        frequency[k] = FIT_LOWEST * exp(FIT_FINE * k);
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
-        if (!levels(sound, spans[s].from, spans[s].to, raw))
+        if (!partials_levels(sound, spans[s].from, spans[s].to, frequency, FIT_LINES, raw))
             return himc_error_set(error, "out of memory");
         for (int k = 0; k < FIT_LINES; k++) {
             int low = k < AROUND ? 0 : k - AROUND, n = 0;

@@ -3,7 +3,8 @@
 ///
 /// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
 /// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
-/// of that. So the size whose own modes fit best is the drum's; all of its partials tune it. What
+/// of that. So the size whose own modes fit best is the drum's, above all those that outlast the
+/// room; all of its partials tune it. What
 /// the air takes follows from both; the losses S0 and S1 are the rest. A room blurs each partial,
 /// so the last 0.1 % of the tuning and the losses are those at which all of the drum's pairs are
 /// likeliest together, late, in narrow bands (partials_likely). A pair that rings no longer than
@@ -27,6 +28,8 @@
 #define LONGEST 15.0    // (s) of a drum; what rings longer is hum
 #define LOUD 40.0       // (dB) below the strongest a partial counts nothing
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
+#define LASTING 2.0     // partials that ring so much longer than the room are the drum's ...
+#define EXACT 0.0015    // ... and nearer to a mode (per frequency; counts half)
 #define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
 #define MISSING 10.0    // ... or it is less likely (dB)
 #define SHARP 0.001     // per frequency: a fine tuning
@@ -57,7 +60,7 @@ static const struct {
 #define TUNED_WITHIN 0.002 // by one pair in a room that outlasts it; chosen, as in our room
 #define STRANGE 0.05       // part of pairs that tell something else; chosen
 #define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
-#define HELD 1.0           // ... and, in a room that outlasts it, so much more
+#define HELD 0.5           // ... and, in a room that outlasts it, so much more
 #define DECAYS_TRIED 49
 #define TRIED_MOST (2 * FINE + 1) // of tunings and decays
 #define DECAY_STEP 0.05           // (ln)
@@ -121,11 +124,31 @@ static void assign(const partials_list *partials, const fit_mode *modes, int cou
     }
 }
 
+// what of the partials that outlast the room is the drum's (dB): their frequencies are exact
+static double judge_lasting(const partials_list *partials, const fit_mode *modes, int count,
+                            const fit_drum *d)
+{
+    double score = 0;
+    for (int i = 0; i < partials->count; i++) {
+        const partial *p = &partials->row[i];
+        double most = 0;
+        for (int k = 0; k < count; k++) {
+            double apart = (p->frequency / modes[k].frequency - 1) / EXACT;
+            if (modes[k].m > 0 && modes[k].n <= 2)
+                most = fmax(most, 1 / (1 + apart * apart));
+        }
+        if (p->t60 > LASTING * partials->room && p->t60 < LONGEST &&
+            p->frequency > DOWN_TO * d->tune && p->frequency < FINE_UP_TO * d->tune)
+            score += most * worth(p);
+    }
+    return score;
+}
+
 // what of the clear partials is the drum's, less what is not and what is not there (dB)
 static double judge(const partials_list *partials, const fit_mode *modes, int count,
                     const fit_drum *d)
 {
-    double score = 0, loudest = strongest(partials);
+    double score = judge_lasting(partials, modes, count, d), loudest = strongest(partials);
     bool below = false;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
@@ -241,8 +264,9 @@ static bool add_tunings(const partials_sound *sound, double room, double step, c
     for (int i = 0; i < count; i++) {
         for (int k = 0; k <= 2 * FINE; k++)
             shift[k] = step * (k - FINE) * pair[i].frequency;
-        if (!partials_likely(sound, room, pair[i].frequency, pair[i].apart, shift, 2 * FINE + 1,
-                             &pair[i].due, 1, likely, error))
+        if (!partials_likely(sound, room > 0 ? PARTIALS_LATE : PARTIALS_EARLY, room,
+                             pair[i].frequency, pair[i].apart, shift, 2 * FINE + 1, &pair[i].due, 1,
+                             likely, error))
             return false;
         double held = room * pair[i].due / log(1000); // by the room
         blur(likely, 2 * FINE + 1, TUNED_WITHIN * (room > 0 ? held * held : 1) / step);
@@ -260,7 +284,7 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
         double sum[2 * FINE + 1] = {0}, step = round == 0 ? EARLY_STEP : FINE_STEP;
         int best = FINE;
         if (!add_tunings(sound, 0, step, d, sum, error) ||
-            (round > 0 && room > 0 && !add_tunings(sound, room, step, d, sum, error)))
+            (room > 0 && !add_tunings(sound, room, step, d, sum, error)))
             return false;
         for (int k = 0; k <= 2 * FINE; k++)
             best = sum[k] > sum[best] ? k : best;
@@ -281,8 +305,9 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
-        if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, &none, 1,
-                             decay, DECAYS_TRIED, likely[i], error))
+        if (!partials_likely(sound, partials->room > 0 ? PARTIALS_LAST : PARTIALS_EARLY,
+                             partials->room, pair[i].frequency, pair[i].apart, &none, 1, decay,
+                             DECAYS_TRIED, likely[i], error))
             return false;
         double held = partials->room * pair[i].due / log(1000); // by the room
         blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);

@@ -15,11 +15,15 @@
 #define MASS 0.05     // (kg) chosen
 #define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
 #define ROUNDS 3
-#define CLEAR 0.0   // (dB) a partial less clear is the room's
-#define NEAR 1.5    // (Hz)
-#define BEAT 1.1    // (s) before the blow
-#define SECONDS 4.0 // after it
-#define AT_ONCE 1.3 // of T60, in a round
+#define CLEAR 0.0           // (dB) a partial less clear is the room's
+#define NEAR 1.5            // (Hz)
+#define BEAT 1.1            // (s) before the blow
+#define SECONDS 4.0         // after it
+#define AT_ONCE 1.3         // of T60, in a round
+#define ALIKE 0.2           // (dB) no more rounds ...
+#define DECAY_DB 10.0       // ... a decay counts so much, per ln of T60
+#define RATE 48000.0        // (Hz) of what is heard ...
+#define LOWEST_RATE 16000.0 // ... if the recording's is lower
 
 typedef struct list {
     const partial *of[MODES];
@@ -27,7 +31,7 @@ typedef struct list {
     int count;
 } list;
 
-bool fit_list_hear(const cli_file *file, double rate, partials_sound *out, himc_error *error)
+static bool hear(const cli_file *file, double rate, partials_sound *out, himc_error *error)
 {
     const char *path = file->temp[0] ? file->temp : file->path;
     size_t frames = (size_t)((BEAT + SECONDS) * rate);
@@ -112,43 +116,49 @@ static double beside(const list *l, int i, int k)
     return fabs(l->of[i]->frequency - l->of[k]->frequency);
 }
 
-static bool correct(list *l, const cli_file *file, double rate, himc_error *error)
+// takes back what is louder or softer than found, or rings longer; the largest of that (dB)
+static double correct(list *l, const partials_list *made)
 {
-    static partials_list made; // large
-    partials_sound heard = {.tracks = 0};
-    double louder[MODES];
-    bool good = fit_list_hear(file, rate, &heard, error) &&
-                partials_find(&heard, FIT_LIST_HIGHEST, &made, error);
-    if (good)
-        partials_lines(&heard, &made);
-    for (int i = 0; good && i < l->count; i++) {
-        const partial *p = l->of[i], *best = nearest(&made, p->frequency, NEAR);
+    double louder[MODES] = {0}, largest = 0;
+    for (int i = 0; i < l->count; i++) {
+        const partial *p = l->of[i], *best = nearest(made, p->frequency, NEAR);
         louder[i] = best ? p->level - best->level : NAN;
-        if (best && p->line && best->line)
-            l->t60[i] *= fmin(fmax(p->t60 / best->t60, 1 / AT_ONCE), AT_ONCE);
+        if (best && p->line && best->line) {
+            double longer = fmin(fmax(p->t60 / best->t60, 1 / AT_ONCE), AT_ONCE);
+            l->t60[i] *= longer;
+            largest = fmax(largest, fabs(DECAY_DB * log(longer)));
+        }
     }
-    for (int i = 0; good && i < l->count; i++) {
+    for (int i = 0; i < l->count; i++) {
         int from = i; // what is not heard of its own is changed as what is heard next to it
         for (int k = 0; k < l->count; k++)
             if (!isnan(louder[k]) && (isnan(louder[from]) || beside(l, k, i) < beside(l, from, i)))
                 from = k;
-        if (!isnan(louder[from]))
+        if (!isnan(louder[from])) {
             l->pressure[i] *= pow(10, louder[from] / 20);
+            largest = fmax(largest, fabs(louder[from] - louder[0]));
+        }
     }
-    partials_sound_free(&heard);
-    return good;
+    return isnan(louder[0]) ? INFINITY : largest;
 }
 
 bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
-              const char *path, cli_file *file, himc_error *error)
+              const char *path, cli_file *file, partials_list *made, himc_error *error)
 {
     list l = {.count = 0};
     choose(found, &l);
     if (l.count == 0)
         return himc_error_set(error,
                               "no partial is clear of the noise, expected a sound that rings");
-    bool good = write(&l, radius, path, file, error);
-    for (int round = 0; good && round < ROUNDS; round++)
-        good = correct(&l, file, sound->rate, error) && write(&l, radius, path, file, error);
-    return good;
+    for (int round = 0;; round++) {
+        partials_sound heard = {.tracks = 0};
+        bool good = write(&l, radius, path, file, error) &&
+                    hear(file, sound->rate < LOWEST_RATE ? RATE : sound->rate, &heard, error) &&
+                    partials_find(&heard, FIT_LIST_HIGHEST, made, error);
+        if (good)
+            partials_lines(&heard, made);
+        partials_sound_free(&heard);
+        if (!good || round == ROUNDS || correct(&l, made) < ALIKE)
+            return good;
+    }
 }

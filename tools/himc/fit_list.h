@@ -9,10 +9,9 @@
 #define FIT_LIST_RADIUS 0.1      ///< (m) of the struck disc, if not known; chosen
 
 /// Writes the list (head/list.c says what its lines mean) whose partials are as strong as found;
-/// the file is not kept yet.
+/// the file is not kept yet. `made` gets those that the usual listener hears, without a room, of a
+/// stroke mf on it.
 bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
-              const char *path, cli_file *file, himc_error *error);
-/// Adds what the usual listener hears, without a room, of a stroke mf on the list in that file.
-bool fit_list_hear(const cli_file *file, double rate, partials_sound *out, himc_error *error);
+              const char *path, cli_file *file, partials_list *made, himc_error *error);
 
 #endif

@@ -21,7 +21,8 @@
 #define MIDDLE 2
 #define FINALISTS 2 // drums whose blows are tried at all dynamics
 #define LIKELY 0.08 // (dB of the spectrum per dB of the partials) chosen
-#define HEARD 1.1   // (s) a beat, and as long as a stroke must be
+#define HEARD 1.1   // (s) a beat, and as long as a stroke must be, ...
+#define PLAYED 0.65 // (s) ... silent from here on: the blow is over
 #define BLOCK 1024
 #define MALLETS 4
 
@@ -32,20 +33,25 @@ typedef struct spectrum {
 // of one channel, in a window that falls to 0
 static void add_spectrum(const double *x, size_t length, double rate, spectrum *s)
 {
-    for (int b = 0; b < BANDS; b++)
+    for (int b = 0; b < BANDS; b++) {
+        double re[LINES] = {0}, im[LINES] = {0}, c[LINES], s1[LINES], u[LINES], v[LINES];
         for (int l = 0; l < LINES; l++) {
-            double f = LOW * pow(2, 0.5 * (b + (l + 0.5) / LINES)), re = 0, im = 0;
-            double turn = 2 * HIMC_PI * f / rate, c = cos(turn), sine = sin(turn), u = 1, v = 0;
-            for (size_t i = 0; i < length && f < 0.45 * rate; i++) {
-                double value = x[i] * (1 + cos(HIMC_PI * (double)i / (double)length)), next;
-                re += value * u;
-                im += value * v;
-                next = u * c - v * sine;
-                v = u * sine + v * c;
-                u = next;
-            }
-            s->power[b] += (re * re + im * im) * pow(2, 0.5 * b);
+            double turn = 2 * HIMC_PI * LOW * pow(2, 0.5 * (b + (l + 0.5) / LINES)) / rate;
+            c[l] = cos(turn), s1[l] = sin(turn), u[l] = turn < 0.9 * HIMC_PI, v[l] = 0;
         }
+        for (size_t i = 0; i < length; i++) {
+            double value = x[i] * (1 + cos(HIMC_PI * (double)i / (double)length));
+            for (int l = 0; l < LINES; l++) {
+                double next = u[l] * c[l] - v[l] * s1[l];
+                re[l] += value * u[l];
+                im[l] += value * v[l];
+                v[l] = u[l] * s1[l] + v[l] * c[l];
+                u[l] = next;
+            }
+        }
+        for (int l = 0; l < LINES; l++)
+            s->power[b] += (re[l] * re[l] + im[l] * im[l]) * pow(2, 0.5 * b);
+    }
 }
 
 bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
@@ -101,7 +107,7 @@ static bool blow(const fit_drum *d, int mallet, int dynamic, double rate, spectr
     partials_sound sound = {.tracks = 0};
     bool good = heard || himc_error_set(error, "out of memory");
     if (p)
-        himc_performance_read(p, heard, 2, (int)frames);
+        himc_performance_read(p, heard, 2, (int)(PLAYED * rate));
     good = good && p && partials_add(&sound, heard, frames, 2, rate, "the drum made", error);
     *out = (spectrum){{0}};
     for (int i = 0; i < sound.tracks; i++)
@@ -133,28 +139,45 @@ static double apart(const spectrum *found, const spectrum *noise, const spectrum
     return sqrt(sum / BANDS);
 }
 
-// tries all mallets at some dynamics, and keeps what is nearer
-static bool try_blows(const spectrum *found, const spectrum *noise, double rate, int from, int to,
-                      fit_drum *d, himc_error *error)
+// strikes with a mallet and keeps what is nearer; how near it is, or a negative number
+static double try_blow(const spectrum *found, const spectrum *noise, double rate, int mallet,
+                       int dynamic, fit_drum *d, himc_error *error)
 {
     spectrum made;
-    for (int i = MALLETS * from; i < MALLETS * to; i++) {
-        int mallet = i % MALLETS, dynamic = i / MALLETS;
-        if (!blow(d, mallet, dynamic, rate, &made, error))
-            return false;
-        double here = apart(found, noise, &made);
-        if (here < d->distance) {
-            if (mallet != d->mallet) {
-                d->next = d->distance;
-                d->other = d->mallet;
-            }
-            d->distance = here;
-            d->mallet = mallet;
-            d->dynamic = dynamic;
-        } else if (mallet != d->mallet && here < d->next) {
-            d->next = here;
-            d->other = mallet;
+    if (!blow(d, mallet, dynamic, rate, &made, error))
+        return -1;
+    double here = apart(found, noise, &made);
+    if (here < d->distance) {
+        if (mallet != d->mallet) {
+            d->next = d->distance;
+            d->other = d->mallet;
         }
+        d->distance = here;
+        d->mallet = mallet;
+        d->dynamic = dynamic;
+    } else if (mallet != d->mallet && here < d->next) {
+        d->next = here;
+        d->other = mallet;
+    }
+    return here;
+}
+
+// from mf on softer, else louder, as long as that comes nearer
+static bool try_dynamics(const spectrum *found, const spectrum *noise, double rate, int mallet,
+                         double middle, fit_drum *d, himc_error *error)
+{
+    for (int way = -1; way <= 1; way += 2) {
+        double last = middle;
+        for (int i = MIDDLE + way; i >= 0 && i < DYNAMICS; i += way) {
+            double here = try_blow(found, noise, rate, mallet, i, d, error);
+            if (here < 0)
+                return false;
+            if (here > last)
+                break;
+            last = here;
+        }
+        if (last < middle)
+            break;
     }
     return true;
 }
@@ -174,24 +197,31 @@ bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int co
         add_spectrum(sound->track[i] + sound->length[i] - length, length, sound->rate, &noise);
     }
     fit_drum likely[FINALISTS];
+    double middle[FINALISTS][MALLETS];
     int kept = 0;
     for (int i = 0; i < count; i++) {
         fit_drum d = choice[i];
+        double here[MALLETS];
         d.distance = d.next = INFINITY;
         d.mallet = d.other = -1;
-        if (!try_blows(&found, &noise, sound->rate, MIDDLE, MIDDLE + 1, &d, error))
-            return false;
+        for (int m = 0; m < MALLETS; m++)
+            if ((here[m] = try_blow(&found, &noise, sound->rate, m, MIDDLE, &d, error)) < 0)
+                return false;
         int k = kept < FINALISTS ? kept++ : FINALISTS;
         for (; k > 0 && unlike(&d) < unlike(&likely[k - 1]); k--)
-            if (k < FINALISTS)
+            if (k < FINALISTS) {
                 likely[k] = likely[k - 1];
-        if (k < FINALISTS)
+                memcpy(middle[k], middle[k - 1], sizeof here);
+            }
+        if (k < FINALISTS) {
             likely[k] = d;
+            memcpy(middle[k], here, sizeof here);
+        }
     }
     for (int i = 0; i < kept; i++) {
-        if (!try_blows(&found, &noise, sound->rate, 0, MIDDLE, &likely[i], error) ||
-            !try_blows(&found, &noise, sound->rate, MIDDLE + 1, DYNAMICS, &likely[i], error))
-            return false;
+        for (int m = 0; m < MALLETS; m++)
+            if (!try_dynamics(&found, &noise, sound->rate, m, middle[i][m], &likely[i], error))
+                return false;
         if (i == 0 || unlike(&likely[i]) < unlike(out))
             *out = likely[i];
     }

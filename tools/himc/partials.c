@@ -28,6 +28,7 @@
 #define ORDER 30           // most poles in a band
 #define CLEAR 8.0          // eigenvalue over the noise's that counts; chosen
 #define T60_LEAST 0.04     // (s)
+#define EMPTY 3e-8         // power of a band with nothing in it, per the sound's (-75 dB)
 #define LEVEL_LEAST (-55.) // (dB)
 #define MERGED 1.25        // (Hz)
 #define DECAYS_DIFFER 0.35 // of ln T60
@@ -51,16 +52,16 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
-// When a room has answered the onset (s), and before that, while it only echoes. Windows that
-// overlap share their weight.
+// (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of
+// the room, at most 1 s: its answer biases decays, while tunings need what is left of a pair
 #define LIKELY_WINDOWS 2
-static const double late_from[LIKELY_WINDOWS] = {0.5, 1.0};
-static const double early_from[LIKELY_WINDOWS] = {0.03, 0.1};
+static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {1.2, 2.0}};
 
 // of a pair, per the usual one: each head is uneven in its own way
 static const double splits[] = {0, 0.5, 1, 1.5, 2};
 
 typedef struct band {
+    const partials_sound *sound;
     double centre, width; // (Hz)
     int step, half;       // decimation, filter
     double *tap;          // (2 half + 1) filter, turning by the centre: real parts ...
@@ -74,8 +75,11 @@ typedef struct pole {
     double frequency, decay, level;
 } pole;
 
-static bool band_open(band *b, double centre, double width, const partials_sound *sound)
+static bool band_open(band *b, double centre, double width, const partials_sound *all)
 {
+    const partials_sound *sound =
+        centre + (0.5 + TRANSITION) * width < PARTIALS_LOW ? all->low : all;
+    b->sound = sound;
     b->width = width;
     b->centre = centre;
     double transition = TRANSITION * b->width, stop = 0.5 * (b->width + transition), sum = 0;
@@ -119,8 +123,9 @@ static void band_sample(const band *b, const double *x, double angle, double out
 }
 
 // fills z from a track's sample `from` on; false if the tracks are too short
-static bool band_fill(band *b, const partials_sound *sound, size_t from, int span, int least)
+static bool band_fill(band *b, size_t from, int span, int least)
 {
+    const partials_sound *sound = b->sound;
     double turn = -2 * HIMC_PI * b->centre / sound->rate;
     size_t shortest = sound->length[0];
     for (int i = 1; i < sound->tracks; i++)
@@ -138,14 +143,27 @@ static bool band_fill(band *b, const partials_sound *sound, size_t from, int spa
     return true;
 }
 
-// the poles within the band's width whose sound decays
-static int find_poles(band *b, const partials_sound *sound, double start, int span, pole *out,
-                      himc_linear *outcome)
+// whether the band has nothing that would be kept: its mean power beside the sound's
+static bool is_empty(const band *b, size_t from)
 {
+    double power = 0, all = 0;
+    size_t length = (size_t)b->samples * (size_t)b->step;
+    for (int i = 0; i < 2 * b->samples * b->tracks; i++)
+        power += b->z[i] * b->z[i] / b->samples;
+    for (int i = 0; i < b->tracks; i++)
+        for (size_t n = from; n < from + length; n++)
+            all += b->sound->track[i][n] * b->sound->track[i][n] / (double)length;
+    return !(power > EMPTY * all);
+}
+
+// the poles within the band's width whose sound decays
+static int find_poles(band *b, double start, int span, pole *out, himc_linear *outcome)
+{
+    const partials_sound *sound = b->sound;
     double p[2 * ORDER], c[2 * ORDER * PARTIALS_TRACKS], rate = sound->rate / b->step;
     int found = 0, kept = 0;
     size_t from = (size_t)(start * sound->rate) + (size_t)b->half;
-    if (!band_fill(b, sound, from, span, SPAN_LEAST))
+    if (!band_fill(b, from, span, SPAN_LEAST) || is_empty(b, from))
         return 0;
     int most = b->samples / 4 < ORDER ? b->samples / 4 : ORDER;
     *outcome = himc_linear_exponentials(b->samples, b->tracks, b->z, most, CLEAR, p, c, &found);
@@ -220,7 +238,7 @@ static bool find_in_band(const partials_sound *sound, double low, const windows 
     himc_linear outcome = band_open(&b, low + 0.5 * *width, *width, sound) ? HIMC_LINEAR_SOLVED
                                                                            : HIMC_LINEAR_NO_MEMORY;
     for (int w = 0; w < WINDOWS && outcome != HIMC_LINEAR_NO_MEMORY; w++)
-        count[w] = find_poles(&b, sound, set->first + w * set->next, set->span, found[w], &outcome);
+        count[w] = find_poles(&b, set->first + w * set->next, set->span, found[w], &outcome);
     band_close(&b);
     if (outcome == HIMC_LINEAR_NO_MEMORY)
         return himc_error_set(error, "out of memory");
@@ -394,22 +412,22 @@ static void weigh(band *b, double rate, double room)
         b->weight[n] = room > 0 ? fmin(most, pow(1e6, n / rate / room)) : 1;
 }
 
-bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
-                     const double *shift, int shifts, const double *decay, int decays, double *out,
-                     himc_error *error)
+bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
+                     double apart, const double *shift, int shifts, const double *decay, int decays,
+                     double *out, himc_error *error)
 {
     band b = {0};
     if (!band_open(&b, frequency, fmax(PAIR, 2 * apart), sound)) {
         band_close(&b);
         return himc_error_set(error, "out of memory");
     }
-    double rate = sound->rate / b.step;
+    double rate = b.sound->rate / b.step;
     double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
     memset(out, 0, sizeof *out * (size_t)(shifts * decays));
     for (int w = 0; w < LIKELY_WINDOWS; w++) {
-        double start = (room > 0 ? late_from : early_from)[w];
-        size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
-        if (!band_fill(&b, sound, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
+        double start = from_onset[part][w] * (part == PARTIALS_LAST ? fmin(room, 1) : 1);
+        size_t from = (size_t)(start * b.sound->rate) + (size_t)b.half;
+        if (!band_fill(&b, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
         weigh(&b, rate, room);
         // the filter passes half of the band

@@ -28,9 +28,11 @@ typedef struct partials_sound {
     double *track[PARTIALS_TRACKS]; ///< (length), their peak over the channels of a stroke is 1
     size_t length[PARTIALS_TRACKS];
     int tracks;
-    double rate;  ///< (Hz), of all
-    double noise; ///< before the onset (dB re the first .5 s), of the worst
+    double rate;                ///< (Hz), of all
+    double noise;               ///< before the onset (dB re the first .5 s), of the worst
+    struct partials_sound *low; ///< the same at a lower rate, up to PARTIALS_LOW
 } partials_sound;
+#define PARTIALS_LOW 1300.0 ///< (Hz) of a drum's partials
 
 typedef struct partials_list {
     partial row[PARTIALS_MOST]; ///< rising in frequency
@@ -50,16 +52,25 @@ void partials_sound_free(partials_sound *sound);
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
 
+/// Level (dB) at `count` frequencies up to PARTIALS_LOW (Hz) from `from` to `to` (s), of all
+/// channels together. False without memory.
+bool partials_levels(const partials_sound *sound, double from, double to, const double *frequency,
+                     int count, double *level);
+
 #define PARTIALS_LINES 1200.0 ///< (Hz) up to which lines are found
 /// Puts lines that fall evenly in the place of the poles about them, and drops the hall's.
 void partials_lines(const partials_sound *sound, partials_list *list);
 
+/// Which part of a sound is compared: while a room only echoes the onset, once it has answered, and
+/// when its answer is soft.
+typedef enum partials_part { PARTIALS_EARLY, PARTIALS_LATE, PARTIALS_LAST } partials_part;
+
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
-/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s); 0: early.
-/// False with the reason, without memory.
-bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
-                     const double *shift, int shifts, const double *decay, int decays, double *out,
-                     himc_error *error);
+/// energy that least squares leave in a narrow band, in a `room` of that T60 (s), or 0. False with
+/// the reason, without memory.
+bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
+                     double apart, const double *shift, int shifts, const double *decay, int decays,
+                     double *out, himc_error *error);
 
 #endif

@@ -24,9 +24,8 @@
 #define WIDEST 20.0    // ... and so much of the way to the next line
 #define GAP_PART 0.45
 #define BEGIN 0.15 // (s) of the slope
-#define END 2.2    // (s)
 #define TICK 0.005 // (s) of the envelope
-#define TICKS 420
+#define TICKS 410  // up to 2.2 s
 #define LANES 8
 #define LEAST_TICKS 48  // of a slope
 #define DOWN 35.0       // (dB)
@@ -43,34 +42,44 @@ static size_t shortest(const partials_sound *sound)
     return least;
 }
 
-// level (dB) of all channels together (Goertzel 1958), Hann's window
-static bool find_spectrum(const partials_sound *sound, double level[BINS])
+bool partials_levels(const partials_sound *sound, double from, double to, const double *frequency,
+                     int count, double *level)
 {
-    double end = fmin(TO, (double)shortest(sound) / sound->rate);
-    size_t start = (size_t)(FROM * sound->rate), n = (size_t)(fmax(end - FROM, 0) * sound->rate);
+    const partials_sound *low = sound->low;
+    size_t start = (size_t)(from * low->rate), n = (size_t)(fmax(to - from, 0) * low->rate);
     double *x = malloc((n + 1) * sizeof *x);
-    memset(level, 0, BINS * sizeof *level);
-    for (int t = 0; x && t < sound->tracks; t++) {
+    memset(level, 0, (size_t)count * sizeof *level);
+    for (int t = 0; x && t < low->tracks; t++) {
         for (size_t i = 0; i < n; i++)
-            x[i] = sound->track[t][start + i] * (1 - cos(2 * HIMC_PI * (double)i / (double)n));
-        for (int first = 0; first < BINS; first += LANES) { // together, for their speed
-            double turn[LANES], one[LANES] = {0}, two[LANES] = {0};
-            for (int k = 0; k < LANES; k++)
-                turn[k] = 2 * cos(2 * HIMC_PI * (LOWEST + STEP * (first + k)) / sound->rate);
+            x[i] = start + i < low->length[t]
+                       ? low->track[t][start + i] * (1 - cos(2 * HIMC_PI * (double)i / (double)n))
+                       : 0;
+        for (int first = 0; first < count; first += LANES) { // Goertzel 1958, together for speed
+            double turn[LANES] = {0}, one[LANES] = {0}, two[LANES] = {0};
+            for (int k = 0; k < LANES && first + k < count; k++)
+                turn[k] = 2 * cos(2 * HIMC_PI * frequency[first + k] / low->rate);
             for (size_t i = 0; i < n; i++)
                 for (int k = 0; k < LANES; k++) {
                     double now = x[i] + turn[k] * one[k] - two[k];
                     two[k] = one[k];
                     one[k] = now;
                 }
-            for (int k = 0; k < LANES && first + k < BINS; k++)
+            for (int k = 0; k < LANES && first + k < count; k++)
                 level[first + k] += one[k] * one[k] + two[k] * two[k] - turn[k] * one[k] * two[k];
         }
     }
-    for (int k = 0; k < BINS; k++)
+    for (int k = 0; k < count; k++)
         level[k] = 10 * log10(level[k] + 1e-20);
     free(x);
-    return x && end - FROM > LEAST_LONG;
+    return x;
+}
+
+static bool find_spectrum(const partials_sound *sound, double level[BINS])
+{
+    double end = fmin(TO, (double)shortest(sound) / sound->rate), frequency[BINS];
+    for (int k = 0; k < BINS; k++)
+        frequency[k] = LOWEST + STEP * k;
+    return end - FROM > LEAST_LONG && partials_levels(sound, FROM, end, frequency, BINS, level);
 }
 
 // how far a peak stands above the deeper valley's counterpart: the shallower one counts
@@ -102,9 +111,10 @@ static int find_peaks(const double level[BINS], partial *out, int most)
 }
 
 // RMS level (dB) of the channels in a band about a line, at each tick; how many
-static int find_envelope(const partials_sound *sound, double frequency, double width, double *out)
+static int find_envelope(const partials_sound *all, double frequency, double width, double *out)
 {
-    int half = (int)(sound->rate / width), n = 2 * half + 1, tick = (int)(TICK * sound->rate);
+    const partials_sound *sound = all->low;
+    int half = (int)(sound->rate / width), n = 2 * half + 1;
     size_t length = shortest(sound);
     double *c = malloc(2 * sizeof *c * (size_t)n), sum = 0;
     int count = 0;
@@ -115,10 +125,11 @@ static int find_envelope(const partials_sound *sound, double frequency, double w
         c[2 * i] = w * cos(angle);
         c[2 * i + 1] = w * sin(angle);
     }
-    for (size_t at = (size_t)(BEGIN * sound->rate);
-         c && count < TICKS && at < (size_t)(END * sound->rate) && at + (size_t)half < length;
-         at += (size_t)tick) {
+    while (c && count < TICKS) {
+        size_t at = (size_t)lround((BEGIN + TICK * count) * sound->rate);
         double power = 0;
+        if (at + (size_t)half >= length)
+            break;
         for (int t = 0; t < sound->tracks; t++) {
             double re = 0, im = 0;
             int first = at < (size_t)half ? half - (int)at : 0;

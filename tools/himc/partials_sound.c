@@ -23,6 +23,8 @@
 #define RISE 4.0          // of the envelope within 50 ms: another stroke ...
 #define APART 0.12        // ... if it comes so late (s) ...
 #define LOUD 0.1          // ... and is so loud, per peak
+#define LOW_RATE 4000.0   // (Hz) at least, of `low`
+#define LOW_TAPS 2.75     // half its filter's length (1/transition): Blackman's window, -74 dB
 
 typedef struct stroke {
     const float *x;
@@ -126,6 +128,34 @@ static bool check(const stroke *s, double *noise, himc_error *error)
     return true;
 }
 
+// a track at a lower rate: what is above PARTIALS_LOW is filtered out as far as it would come below
+static double *thin(const double *x, size_t length, double rate, int step, size_t *left)
+{
+    double transition = rate / step - 2 * PARTIALS_LOW,
+           turn = HIMC_PI / step; // stop: half the rate
+    long half = (long)(LOW_TAPS * rate / transition), end = (long)length;
+    *left = (length + (size_t)step - 1) / (size_t)step;
+    double *out = malloc(sizeof *out * *left), *tap = malloc(sizeof *tap * (size_t)(2 * half + 1));
+    double sum = 0;
+    for (long i = -half; tap && i <= half; i++) {
+        double t = HIMC_PI * (double)i / ((double)half + 1), angle = turn * (double)i;
+        tap[i + half] = (0.42 + 0.5 * cos(t) + 0.08 * cos(2 * t)) * (i ? sin(angle) / angle : 1);
+        sum += tap[i + half];
+    }
+    for (long at = 0, n = 0; out && tap && at < end; at += step, n++) {
+        double value = 0;
+        for (long i = at < half ? -at : -half; i <= half && at + i < end; i++)
+            value += tap[i + half] * x[at + i];
+        out[n] = value / sum;
+    }
+    bool good = out && tap;
+    free(tap);
+    if (good)
+        return out;
+    free(out);
+    return NULL;
+}
+
 bool partials_add(partials_sound *sound, const float *samples, size_t frames, int channels,
                   double rate, const char *name, himc_error *error)
 {
@@ -145,15 +175,24 @@ bool partials_add(partials_sound *sound, const float *samples, size_t frames, in
     if (!check(&s, &sound->noise, error))
         return false;
     sound->rate = rate;
+    sound->low = sound->low ? sound->low : calloc(1, sizeof *sound->low);
     size_t length = (size_t)fmin((double)(frames - s.onset), LONGEST * rate);
+    int step = (int)(rate / LOW_RATE);
     for (int c = 0; c < channels; c++) {
-        double *track = malloc(sizeof *track * length);
-        if (!track)
-            return himc_error_set(error, "%s: out of memory", name);
-        for (size_t i = 0; i < length; i++)
+        double *track = malloc(sizeof *track * length), *low = NULL;
+        for (size_t i = 0; track && i < length; i++)
             track[i] = at(&s, s.onset + i, c) / s.peak;
+        if (track && sound->low)
+            low = thin(track, length, rate, step, &sound->low->length[sound->tracks]);
+        if (!low) {
+            free(track);
+            return himc_error_set(error, "%s: out of memory", name);
+        }
+        sound->low->rate = rate / step;
+        sound->low->track[sound->tracks] = low;
         sound->length[sound->tracks] = length;
-        sound->track[sound->tracks++] = track;
+        sound->track[sound->tracks] = track;
+        sound->low->tracks = ++sound->tracks;
     }
     return true;
 }
@@ -192,5 +231,8 @@ void partials_sound_free(partials_sound *sound)
 {
     for (int i = 0; i < sound->tracks; i++)
         free(sound->track[i]);
-    sound->tracks = 0;
+    if (sound->low)
+        partials_sound_free(sound->low);
+    free(sound->low);
+    *sound = (partials_sound){.tracks = 0};
 }

@@ -41,16 +41,22 @@ template <class work> himc_linear attempt(work solve)
 #endif
 }
 
-// the covariance of `lags` values in a row
+// the covariance of `lags` values in a row; along a diagonal one value comes and one goes, from the
+// later and softer ones on, so that no digits are lost
 complex_columns covariance(const signals &z, int lags)
 {
     complex_columns sum = complex_columns::Zero(lags, lags);
-    int places = (int)z.rows() - lags + 1;
+    int places = (int)z.rows() - lags + 1, last = lags - 1;
     for (int channel = 0; channel < z.cols(); channel++) {
-        complex_columns rows(lags, places);
-        for (int i = 0; i < lags; i++)
-            rows.row(i) = z.col(channel).segment(i, places).transpose();
-        sum.noalias() += rows * rows.adjoint();
+        auto x = z.col(channel);
+        for (int j = 0; j < lags; j++) {
+            std::complex<double> value = x.segment(j, places).dot(x.segment(last, places));
+            sum(last, j) += value;
+            for (int i = last - 1, k = j - 1; k >= 0; i--, k--) {
+                value += x[i] * std::conj(x[k]) - x[i + places] * std::conj(x[k + places]);
+                sum(i, k) += value;
+            }
+        }
     }
     return sum;
 }
@@ -84,7 +90,11 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
     return attempt([=] {
         signals values(reinterpret_cast<const std::complex<double> *>(z), samples, channels);
         int lags = std::min(samples / 2, HIMC_LINEAR_LAGS);
-        Eigen::SelfAdjointEigenSolver<complex_columns> spaces(covariance(values, lags));
+        // the eigenvectors of the real tridiagonal matrix, and of these the signal's alone turned
+        // back, take half the time of a complex problem
+        Eigen::Tridiagonalization<complex_columns> three(covariance(values, lags));
+        Eigen::SelfAdjointEigenSolver<columns> spaces;
+        spaces.computeFromTridiagonal(three.diagonal(), three.subDiagonal());
         if (spaces.info() != Eigen::Success)
             return HIMC_LINEAR_UNSOLVED;
         double noise =
@@ -92,7 +102,8 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
         *found = std::min(most, (int)(spaces.eigenvalues().array() > clear * noise).count());
         if (*found == 0)
             return HIMC_LINEAR_SOLVED;
-        complex_vector poles = turns(spaces.eigenvectors().rightCols(*found));
+        columns signal = spaces.eigenvectors().rightCols(*found);
+        complex_vector poles = turns(three.matrixQ() * signal.cast<std::complex<double>>());
         if (poles.size() == 0)
             return HIMC_LINEAR_UNSOLVED;
         Eigen::Map<complex_vector>(reinterpret_cast<std::complex<double> *>(p), *found) = poles;
