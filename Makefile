@@ -543,9 +543,14 @@ $(BUILD)/page/engine.wasm: $(TABLE) $(BUILD)/page/parts/parts.o FORCE
 	    LDFLAGS="-flto -O0 -Wl,-O3 -Wl,--lto-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
 PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
 PAGE_TOOLS := cli edit_journal edit_player edit_session edit_text live scene scene_record
-page-here: $(patsubst %,$(BUILD)/viewer/%.o,engine/engine engine/edit scene scene_encode) $(PAGE_TOOLS:%=$(BUILD)/tools/himc/%.o) $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
-	$(Q)$(CXX) $(LDFLAGS) $^ $(BUILD)/parts/parts.o -lwasi-emulated-getpid -o $(BUILD)/engine.new
-	$(Q)cmp -s $(BUILD)/engine.new $(BUILD)/engine.wasm || cp $(BUILD)/engine.new $(BUILD)/engine.wasm
+page-here: $(BUILD)/engine.new
+	$(Q)cmp -s $< $(BUILD)/engine.wasm || cp $< $(BUILD)/engine.wasm
+# wasm-opt: a twentieth faster and smaller
+$(BUILD)/engine.new: $(patsubst %,$(BUILD)/viewer/%.o,engine/engine engine/edit scene scene_encode) $(PAGE_TOOLS:%=$(BUILD)/tools/himc/%.o) $(filter-out $(PAGE_LEFT_OUT),$(LIB_O)) $(BUILD)/parts/parts.o
+	$(call say,link)
+	$(Q)$(CXX) $(LDFLAGS) $^ -lwasi-emulated-getpid -o $@
+	$(Q)! command -v wasm-opt >/dev/null || wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-sign-ext --enable-mutable-globals \
+	    --enable-nontrapping-float-to-int $@ -o $@
 
 $(PAGE_MAKER): $(BUILD)/viewer/engine/page.o $(SHARE_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)

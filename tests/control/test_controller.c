@@ -420,6 +420,33 @@ static void test_set_gain_sets_flexion_and_spares_the_length_axis(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.36 * i.z / i.y, controller.gain[j].damping.z);
 }
 
+// in steps of two lengths, under other targets from the sixth on, with a gain from the ninth on
+static void test_sleeping_legs_have_the_torques_that_a_step_computes(void)
+{
+    himc_sleeping_legs legs = {.asked = NULL};
+    himc_vec3 computed[HIMC_JOINTS], given[HIMC_JOINTS];
+    himc_articulation art;
+    int spared = 0;
+    himc_articulate(&skeleton, &state, &art);
+    himc_articulate_upper(&skeleton, &state, &art);
+    controller.articulation = &art;
+    for (int n = 0; n < 12; n++) {
+        controller.step = n % 2 ? STEP : 1.25 * STEP;
+        reference.tip[HIMC_LEFT].x.z += 0.001;
+        if (n == 6)
+            reference.posture.rate[HIMC_LEGS - 1].y = 0.1;
+        if (n == 9)
+            set_gain(HIMC_LEGS - 1, 300, 10);
+        controller.legs = NULL;
+        himc_controller_torques(&controller, &skeleton, &state, &reference, computed);
+        controller.legs = &legs;
+        himc_controller_torques(&controller, &skeleton, &state, &reference, given);
+        spared += legs.asked != NULL;
+        TEST_ASSERT_EQUAL_MEMORY(computed, given, sizeof given);
+    }
+    TEST_ASSERT_EQUAL_INT(6, spared);
+}
+
 // the choice of a command is the index of a row
 static void test_laws_and_solvers_have_the_words_of_their_commands(void)
 {
@@ -450,6 +477,7 @@ int main(void)
     RUN_TEST(test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm);
     RUN_TEST(test_default_gains_are_critically_damped_at_the_frequencies_of_the_table);
     RUN_TEST(test_set_gain_sets_flexion_and_spares_the_length_axis);
+    RUN_TEST(test_sleeping_legs_have_the_torques_that_a_step_computes);
     RUN_TEST(test_laws_and_solvers_have_the_words_of_their_commands);
     return UNITY_END();
 }

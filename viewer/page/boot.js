@@ -1,8 +1,12 @@
 // In a page that is one file: unpacks the scripts, and the scene or the other files, that are inside it. A
 // plain script, so that the import map, which says where each module is, is there before the first import.
 (async () => {
-    const bytes = id =>
-        Uint8Array.from(atob(document.getElementById(id).textContent), c => c.charCodeAt(0));
+    const bytes = id => {
+        const packed = atob(document.getElementById(id).textContent),
+            all = new Uint8Array(packed.length);
+        for (let i = 0; i < all.length; i++) all[i] = packed.charCodeAt(i);
+        return all;
+    };
     // the files of a pack by their names
     const unpack = async id => {
         const unpacked = new Blob([bytes(id)]).stream().pipeThrough(new DecompressionStream("deflate")),

@@ -85,7 +85,8 @@ function parchment() {
 }
 
 let shared;
-function materials(envMap) {
+// `plain` (stage.js): without what a plain picture has too few points for
+function materials({ environment: envMap, plain }) {
     if (shared) return shared;
     const metal = (color, roughness, extra) =>
         new THREE.MeshStandardMaterial({
@@ -98,7 +99,7 @@ function materials(envMap) {
         });
     return (shared = {
         copper: metal(rgb("#e08a5c"), 0.2, {
-            bumpMap: dimples(),
+            bumpMap: plain ? null : dimples(),
             bumpScale: 0.006,
             side: THREE.DoubleSide,
         }),
@@ -116,13 +117,13 @@ function materials(envMap) {
 }
 
 // the kettle, and its edge rolled outwards below the collar of the head
-function bowl(a) {
+function bowl(a, plain) {
     const points = [];
     for (let i = 0; i <= 20; i++) {
         const t = ((i / 20) * Math.PI) / 2; // from the bottom up
         points.push([a * Math.pow(Math.sin(t), 0.82), -0.02 - 0.86 * a * Math.pow(Math.cos(t), 0.9)]);
     }
-    return lathe([...points, [1.03 * a, -0.022], [1.03 * a, -0.03]], 64);
+    return lathe([...points, [1.03 * a, -0.022], [1.03 * a, -0.03]], plain ? 32 : 64);
 }
 
 // a shell with its lower hoop
@@ -229,13 +230,15 @@ const COLLAR = [
     [1.026, -0.016, 0.6],
 ];
 
-function headGeometry(a) {
+// `plain`: every other point of the net is drawn
+function headGeometry(a, plain) {
     const g = new THREE.BufferGeometry(),
         rings = RINGS + COLLAR.length,
         position = new Float32Array(3 * (rings + 1) * SECTORS),
         normal = new Float32Array(position.length),
         uv = [],
-        index = [];
+        index = [],
+        step = plain ? 2 : 1;
     for (let r = 0; r <= rings; r++)
         for (let s = 0; s < SECTORS; s++) {
             const t = (2 * Math.PI * s) / SECTORS,
@@ -247,8 +250,9 @@ function headGeometry(a) {
             normal.set([slope * Math.cos(t), slope * Math.sin(t), 1 - slope], 3 * (r * SECTORS + s));
             uv.push(0.5 + x / 2, 0.5 + y / 2);
             const i = r * b + s,
-                j = r * b + ((s + 1) % b);
-            if (r < rings) index.push(i, i + b, j, j, i + b, j + b);
+                j = r * b + ((s + step) % b),
+                next = (r < RINGS ? step : 1) * b;
+            if (r < rings && s % step === 0 && (r > RINGS || r % step === 0)) index.push(i, i + next, j, j, i + next, j + next);
         }
     g.setIndex(index);
     g.setAttribute("position", new THREE.BufferAttribute(position, 3));
@@ -307,15 +311,16 @@ export class Drum {
     // `length` and `width` of what is no drum: then nothing is seen of head and kettle; without a length the
     // width is the depth of a shell or plates
     build(a, z, length, width) {
-        const m = materials(this.stage.environment);
+        const { plain } = this.stage,
+            m = materials(this.stage);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
-        this.head = new THREE.Mesh(headGeometry(a), m.head);
+        this.head = new THREE.Mesh(headGeometry(a, plain), m.head);
         this.trim = new THREE.Mesh(fittings(a), m.metal);
         this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
         const thin = !this.slab && width > 0 && width < SHALLOW;
         if (this.slab) this.tilted.add(this.slab);
         else if (thin) this.tilted.add(new THREE.Mesh(plates(a, width), m.metal));
-        else this.tilted.add(new THREE.Mesh(width > 0 ? shell(a, width) : bowl(a), width > 0 ? m.wood : m.copper), this.head, this.trim);
+        else this.tilted.add(new THREE.Mesh(width > 0 ? shell(a, width) : bowl(a, plain), width > 0 ? m.wood : m.copper), this.head, this.trim);
         this.legs = new THREE.Mesh(thin ? tripod(z) : stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);
         this.pedal = new THREE.Mesh(plate(), m.metal);
         this.pedal.position.set(a + HINGE, 0, -z);

@@ -312,8 +312,9 @@ export const shirts = [
 ];
 export const COLORS = { skin: "#a98e7c", hair: "#2a211c", lips: "#9c7768", trousers: "#2b2f38", shoes: "#17181c" };
 
+const COARSE = 1.7; // of the cells of a plain picture; chosen: seen by looking for it only
 let model; // geometry, the same for all performers
-function sharedModel() {
+export function sharedModel({ plain }) {
     if (model) return model;
     const at = kinematics(restRotation);
     const matrices = segments.map((s, i) =>
@@ -324,7 +325,7 @@ function sharedModel() {
         ),
     );
     return (model = {
-        geometries: surfaces().map(parts => sculpt(parts, matrices)),
+        geometries: surfaces().map(parts => sculpt(parts, matrices, plain ? COARSE : 1)),
         inverses: matrices.map(m => new THREE.Matrix4().getInverse(m)),
         stick: stick(),
         eye: eye(),
@@ -425,8 +426,9 @@ function mainBone({ attributes: { skinIndex, skinWeight } }, vertex) {
 // A figure in its own group, moved by set(). `bones[i].matrixWorld` is segment i in the group's
 // frame.
 export class Figure {
-    constructor(index, environment) {
-        const { geometries, inverses, stick, eye } = sharedModel(),
+    constructor(index, stage) {
+        const { geometries, inverses, stick, eye } = sharedModel(stage),
+            { environment } = stage,
             names = Object.entries({ ...COLORS, shirt: shirts[index % shirts.length] }),
             colors = Object.fromEntries(names.map(([name, color]) => [name, rgb(color)])),
             skin = material(0.74, environment, true),

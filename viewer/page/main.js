@@ -16,6 +16,7 @@ import { Editor } from "./edit.js";
 import { Exporter } from "./export.js";
 import { Studio } from "./studio.js";
 import { HANDS, bone } from "./body.js";
+import { sharedModel } from "./figure.js";
 import { segments } from "./skeleton.js";
 
 const canvas = document.getElementById("stage"),
@@ -611,6 +612,7 @@ if (window.himcFiles) {
     if (stage.plain && !stage.flat) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
+        prepare: () => sharedModel(stage),
         fresh: () => (forget(), panel.forget()),
         drums: shownDrums,
         hold: yes => (held = yes),

@@ -31,7 +31,7 @@ export class Performer {
         this.key = key;
         this.color = shirts[index % shirts.length];
         this.index = index;
-        this.figure = new Figure(index, stage.environment);
+        this.figure = new Figure(index, stage);
         this.group = this.figure.group;
         this.group.visible = false;
         this.poses = [];

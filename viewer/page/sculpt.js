@@ -236,10 +236,11 @@ function skinWeights(part, near, x, y, z) {
 
 // One skinned geometry from parts and the rest matrices of the bones. Part: solids; soft, the width
 // of their joints (m); color, a name kept by vertex in userData.paint; blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
-// solids taken away; shape, a function that changes the distance.
-export function sculpt(parts, rest) {
+// solids taken away; shape, a function that changes the distance. Cells are
+// `coarse` times as wide.
+export function sculpt(parts, rest, coarse) {
     const all = { position: [], index: [], normal: [], bones: [], weights: [], paint: [] };
-    for (const part of parts) carve(part, rest, all);
+    for (const part of parts) carve({ ...part, cell: coarse * part.cell }, rest, all);
     const geometry = new THREE.BufferGeometry();
     geometry.userData.paint = all.paint;
     geometry.setIndex(all.index);

@@ -222,7 +222,7 @@ export class Stage {
             color: rgb("#b9a08c"),
             map: planks(this.plain ? 1 : 8),
             roughness: 0.55,
-            envMap: this.environment,
+            envMap: this.plain ? null : this.environment, // it fills the picture
             envMapIntensity: 0.25,
         });
         const floor = new THREE.Mesh(new THREE.PlaneBufferGeometry(48, 48), wood);

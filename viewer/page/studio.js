@@ -38,7 +38,7 @@ export async function textOf(hash) {
     return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
 }
 
-// `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
+// `on` has: frame, the handlers of a Stream; prepare(): a piece will come; fresh(): another piece begins; drums(): those that are seen;
 // ray(press); plays(): a playback is shown; edit(connect): the piece to which this opens a channel; scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
@@ -180,8 +180,9 @@ export class Studio {
 
     // --- what the Worker tells
 
-    hear({ frame, loaded, failed, line, saved, bytes, unread }, from) {
+    hear({ frame, loaded, failed, line, saved, bytes, unread, begins }, from) {
         if (unread) ((this.module = null), this.send(from)); // a browser that hands no module on
+        else if (begins) this.on.prepare(); // while it loads
         else if (frame) readFrame(frame, this.handlers);
         else if (saved) (this.texts.set(saved, bytes), this.save(saved, bytes));
         else if (loaded !== undefined) (this.takeOver(from), this.fresh(from));

@@ -225,6 +225,7 @@ class Player {
 
     begin({ module, wasm, files, rate }) {
         if (this.engine) return;
+        this.tell({ begins: true });
         this.engine = new Engine(module ?? new WebAssembly.Module(wasm), rate);
         for (const [name, bytes] of files) this.engine.files.bytes.set(name, bytes);
         setInterval(() => this.guarded(() => this.tick()), TICK);

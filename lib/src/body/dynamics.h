@@ -118,6 +118,12 @@ HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_
                                       const himc_vec3 *relative, const himc_spatial *root,
                                       himc_vec3 torque[HIMC_JOINTS], himc_spatial *needed);
 
+/// The same without the legs, under a pelvis that does not move: their torques stay.
+HIMC_RT void himc_inverse_dynamics_upper(const himc_skeleton *skeleton,
+                                         const himc_body_state *state,
+                                         const himc_articulation *articulation,
+                                         const himc_vec3 *relative, himc_vec3 torque[HIMC_JOINTS]);
+
 /// himc_forward_dynamics, and under a wrench on a pelvis that is free (NULL: none); `root` takes
 /// the acceleration of the pelvis, unless NULL.
 HIMC_RT void himc_forward_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,

@@ -36,8 +36,9 @@ static void find_own(const himc_skeleton *skeleton, const himc_body_state *s,
     *moment = himc_vec3_add(rotational, himc_vec3_cross(c, *force));
 }
 
+// of the segments before `end`
 static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
-                         const himc_articulation *art, const himc_vec3 *relative,
+                         const himc_articulation *art, int end, const himc_vec3 *relative,
                          const himc_vec3 *spin, const himc_spatial *root,
                          himc_vec3 torque[HIMC_JOINTS], himc_spatial *needed)
 {
@@ -49,7 +50,7 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
         m[0].angular = root->angular;
         m[0].linear = himc_vec3_add(m[0].linear, root->linear);
     }
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = 1; i < end; i++) {
         int p = skeleton->segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         himc_vec3 linear = add_centripetal(m[p].linear, m[p].angular, spin[p], r);
@@ -57,7 +58,7 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
         m[i] = (motion){angular, linear, {0, 0, 0}, {0, 0, 0}};
     }
     // inwards
-    for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
+    for (int i = end - 1; i > 0; i--) {
         find_own(skeleton, s, art, i, &m[i], spin[i], &own, &n);
         himc_vec3 f = himc_vec3_add(m[i].force, own);
         int p = skeleton->segment[i].parent;
@@ -85,8 +86,8 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
                            const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
     static const himc_vec3 none[HIMC_SEGMENTS];
-    find_torques(skeleton, s, NULL, relative ? relative : none, still ? none : s->spin, NULL,
-                 torque, NULL);
+    find_torques(skeleton, s, NULL, HIMC_SEGMENTS, relative ? relative : none,
+                 still ? none : s->spin, NULL, torque, NULL);
 }
 
 void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
@@ -94,7 +95,14 @@ void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_sta
                               const himc_spatial *root, himc_vec3 torque[HIMC_JOINTS],
                               himc_spatial *needed)
 {
-    find_torques(skeleton, s, art, relative, s->spin, root, torque, needed);
+    find_torques(skeleton, s, art, HIMC_SEGMENTS, relative, s->spin, root, torque, needed);
+}
+
+void himc_inverse_dynamics_upper(const himc_skeleton *skeleton, const himc_body_state *s,
+                                 const himc_articulation *art, const himc_vec3 *relative,
+                                 himc_vec3 torque[HIMC_JOINTS])
+{
+    find_torques(skeleton, s, art, HIMC_LEGS, relative, s->spin, NULL, torque, NULL);
 }
 
 // with the relative accelerations of the joints before segment `end`

@@ -21,6 +21,40 @@
 #define LAW(ID, name, word, accelerates) {himc_law_##name, accelerates},
 const himc_law_row himc_laws[HIMC_LAW_COUNT] = {HIMC_LAWS(LAW)};
 
+// whether the legs have the same targets
+static bool same_legs(const himc_posture_motion *a, const himc_posture_motion *b)
+{
+    enum { FIRST = HIMC_LEGS - 1, COUNT = HIMC_JOINTS - FIRST };
+    return memcmp(a->joint + FIRST, b->joint + FIRST, COUNT * sizeof *a->joint) == 0 &&
+           memcmp(a->rate + FIRST, b->rate + FIRST, COUNT * sizeof *a->rate) == 0 &&
+           memcmp(a->acceleration + FIRST, b->acceleration + FIRST,
+                  COUNT * sizeof *a->acceleration) == 0;
+}
+
+// what the legs are asked for, if they sleep and it is known
+static const himc_leg_torques *known_legs(const himc_controller *c,
+                                          const himc_posture_motion *targets)
+{
+    for (int i = 0; c->articulation && c->articulation->end == HIMC_LEGS && i < 2; i++)
+        if (c->legs->known[i].step == c->step && same_legs(&c->legs->known[i].targets, targets))
+            return &c->legs->known[i];
+    return NULL;
+}
+
+static void know_legs(const himc_controller *c, const himc_posture_motion *targets,
+                      const himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_leg_torques *known = c->legs->known;
+    if (!c->articulation || c->articulation->end > HIMC_LEGS || c->limits ||
+        c->config.law != HIMC_LAW_COMPUTED_TORQUE) {
+        known[0].step = known[1].step = 0;
+        return;
+    }
+    known += known[0].step > 0 && known[0].step != c->step;
+    *known = (himc_leg_torques){.step = c->step, .targets = *targets};
+    memcpy(known->torque, torque, sizeof known->torque);
+}
+
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])
@@ -29,7 +63,9 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_arm_jacobian jacobian[HIMC_HANDS];
     double reserve[HIMC_HANDS] = {1, 1};
     himc_articulation own;
-    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
+    if (c->legs)
+        c->legs->asked = known_legs(c, &reference->posture);
+    himc_tracking_error_joints(skeleton, s, &reference->posture, himc_joints_computed(c), &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
         if (c->config.mode == HIMC_PIPELINE_HIMC)
@@ -40,9 +76,13 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     law_input in = {c, skeleton, s, reference, jacobian, &e};
     const himc_law_row *law = &himc_laws[c->config.law];
     himc_vec3 wanted[HIMC_JOINTS], asked[HIMC_JOINTS];
+    if (himc_joints_computed(c) < HIMC_JOINTS)
+        memcpy(asked, c->legs->asked->torque, sizeof asked);
     law->find(&in, law->accelerates ? wanted : asked);
     if (law->accelerates)
         himc_invert(c, skeleton, s, wanted, asked);
+    if (c->legs && !c->legs->asked)
+        know_legs(c, &reference->posture, asked);
     for (int hand = 0; c->config.human_strength && hand < HIMC_HANDS; hand++)
         reserve[hand] = himc_strength_reserve(c, reference, s, (himc_hand)hand);
     if (law->accelerates && c->config.human_strength)
@@ -87,6 +127,8 @@ himc_gain himc_controller_usual_gain(const himc_controller *c, int joint)
 void himc_controller_configure(himc_controller *c, const himc_controller_config *config)
 {
     c->config = *config;
+    if (c->legs)
+        c->legs->known[0].step = c->legs->known[1].step = 0;
     for (int j = 0; j < HIMC_JOINTS; j++)
         c->gain[j] = config->gain_set[j] ? config->gain[j] : himc_controller_usual_gain(c, j);
 }

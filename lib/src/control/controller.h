@@ -53,6 +53,19 @@ typedef struct himc_controller_config {
     double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
 } himc_controller_config;
 
+/// What sleeping legs (character.h) were asked for in a step of this length, under these targets.
+typedef struct himc_leg_torques {
+    double step;                   ///< (s); 0: not known
+    himc_posture_motion targets;   ///< of the legs
+    himc_vec3 torque[HIMC_JOINTS]; ///< of the legs, before their strength (N m)
+} himc_leg_torques;
+
+/// Sleeping legs with the same targets are asked for the same, so it is not computed again.
+typedef struct himc_sleeping_legs {
+    himc_leg_torques known[2];     ///< steps have two lengths, in whole samples
+    const himc_leg_torques *asked; ///< those of the present step; NULL: it computes all joints
+} himc_sleeping_legs;
+
 /// A configuration in force for one body; made by himc_controller_init.
 typedef struct himc_controller {
     himc_controller_config config;
@@ -64,6 +77,7 @@ typedef struct himc_controller {
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
     const himc_articulation *articulation; ///< borrowed, of this body in the state of the next
                                            ///< call; may be NULL
+    himc_sleeping_legs *legs;     ///< borrowed; NULL (default): each step computes all joints
     struct himc_muscles *muscles; ///< borrowed, act with human strength; may be NULL (default)
     struct himc_balance *balance; ///< borrowed, of a pelvis that is free, else NULL (default)
 } himc_controller;

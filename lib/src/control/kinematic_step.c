@@ -24,7 +24,7 @@ void himc_controller_kinematic_step(const himc_controller *c, const himc_skeleto
         pose->joint[j] = himc_quat_mul(rotate, pose->joint[j]);
     }
     himc_pose_to_state(skeleton, pose, rate, s);
-    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
+    himc_tracking_error_joints(skeleton, s, &reference->posture, HIMC_JOINTS, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian jacobian;
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian);

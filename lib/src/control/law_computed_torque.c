@@ -28,7 +28,7 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS]
     himc_vec3 arm[HIMC_ARM_JOINTS], soft[HIMC_JOINTS];
     // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or,
     // where the user has set gains, those over the inertia
-    for (int j = 0; j < HIMC_JOINTS; j++) {
+    for (int j = 0; j < himc_joints_computed(c); j++) {
         double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
         e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
         himc_vec3 angle = himc_vec3_scale(e->angle[j], w * w);
@@ -47,11 +47,12 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS]
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback);
     }
     // a seated player's legs are relaxed where the user has set no gains
-    memcpy(soft, wanted, sizeof soft);
-    if (c->balance)
+    if (c->balance) {
+        memcpy(soft, wanted, sizeof soft);
         himc_balance_legs(c->balance, in->state, e, c->step, soft);
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        wanted[j] = c->config.gain_set[j] ? wanted[j] : soft[j];
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            wanted[j] = c->config.gain_set[j] ? wanted[j] : soft[j];
+    }
     // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;

@@ -18,6 +18,7 @@
 #include "control/balance.h"
 #include "control/ik.h"
 #include "control/strength.h"
+#include "control/tracking_error.h"
 
 #include <string.h>
 
@@ -31,6 +32,8 @@ void himc_invert(const himc_controller *c, const himc_skeleton *skeleton, const 
 {
     if (c->balance)
         himc_balance_torques(c, skeleton, s, wanted, torque);
+    else if (himc_joints_computed(c) < HIMC_JOINTS)
+        himc_inverse_dynamics_upper(skeleton, s, c->articulation, wanted, torque);
     else
         himc_inverse_dynamics_of(skeleton, s, c->articulation, wanted, NULL, torque, NULL);
 }

@@ -143,8 +143,10 @@ void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton
         double given = bounded ? himc_vec3_length(torque[j]) : asked;
         if (!counts)
             continue;
-        counts->torque[j] = fmax(counts->torque[j], asked);
-        counts->given[j] = fmax(counts->given[j], given);
+        if (asked > counts->torque[j]) // fmax is a call, and NaN is no maximum either
+            counts->torque[j] = asked;
+        if (given > counts->given[j])
+            counts->given[j] = given;
         counts->weak[j] += weak;
     }
     if (counts)

@@ -4,7 +4,6 @@
 /// plus those of the posture, in the null space of J.
 #include "control/tracking_error.h"
 
-#include "body/dynamics.h"
 #include "body/stretch.h"
 #include "control/balance.h"
 #include "control/solvers.h"
@@ -21,9 +20,9 @@ static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
 
 // errors to the joint targets, from the parent's frame into the world
 void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
-                                const himc_posture_motion *target, tracking_error *e)
+                                const himc_posture_motion *target, int joints, tracking_error *e)
 {
-    for (int j = 0; j < HIMC_JOINTS; j++) {
+    for (int j = 0; j < joints; j++) {
         int p = skeleton->segment[j + 1].parent;
         himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
         himc_vec3 missing = himc_quat_log(himc_quat_mul(target->joint[j], himc_quat_conj(q)));

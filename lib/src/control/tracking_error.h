@@ -3,6 +3,7 @@
 #ifndef HIMC_TRACKING_ERROR_H
 #define HIMC_TRACKING_ERROR_H
 
+#include "body/dynamics.h"
 #include "control/controller.h"
 
 /// Of each joint, in the world.
@@ -12,9 +13,16 @@ typedef struct tracking_error {
     himc_vec3 acceleration[HIMC_JOINTS]; ///< q''_t (rad/s^2)
 } tracking_error;
 
-/// Of all joints to their targets.
+/// Of the first `joints` joints to their targets.
 HIMC_RT void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
-                                        const himc_posture_motion *target, tracking_error *e);
+                                        const himc_posture_motion *target, int joints,
+                                        tracking_error *e);
+
+/// The joints that this step computes: not the legs', where they are asked for the same as before.
+static inline int himc_joints_computed(const himc_controller *c)
+{
+    return c->legs && c->legs->asked ? HIMC_LEGS - 1 : HIMC_JOINTS;
+}
 
 /// Replaces the errors of an arm's joints by those that bring its tip to `asked`, or to the nearest
 /// place in reach; the old errors move into the null space.

@@ -125,6 +125,8 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
         b->balance = (himc_balance){.carried = {{0, 0, 0}, {0, 0, 0}}};
         b->controller.balance = &b->balance;
     }
+    b->legs = (himc_sleeping_legs){.asked = NULL};
+    b->controller.legs = &b->legs;
     b->controller.muscles = &b->muscles;
     b->controller.saturation = &b->saturation;
     himc_character_use(b->character, s->engine);
@@ -141,6 +143,7 @@ void himc_body_set_limits(performance_body *b, const himc_limits *limits)
     if (limits)
         b->limits = *limits;
     b->controller.limits = limits ? &b->limits : NULL;
+    b->legs = (himc_sleeping_legs){.asked = NULL};
     memset(b->saturation.measure, 0, sizeof b->saturation.measure);
 }
 

@@ -37,9 +37,10 @@ typedef struct performance_body {
     himc_vec3 tip_force[HIMC_HANDS]; ///< of the last step (N)
     bool accounting;                 ///< `work` is added up
     himc_body_work work;
-    himc_controller controller; ///< borrows `limits` and `saturation`
+    himc_controller controller; ///< borrows `limits`, `legs` and `saturation`
     himc_limits limits;         ///< in force
     himc_saturation_counts saturation;
+    himc_sleeping_legs legs;
     himc_muscles muscles;
     himc_support support; ///< of a pelvis that is free
     himc_balance balance;

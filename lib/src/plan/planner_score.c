@@ -400,10 +400,11 @@ double himc_planner_score_last_beat(const planner_score *score)
 
 int himc_planner_score_round_at(const planner_score *score, double t)
 {
+    if (!score->loop && score->rounds <= 0)
+        return 0;
     double length = himc_planner_score_round_length(score);
     double begin = score->origin + himc_planner_score_seconds(score, score->from);
-    bool repeats = score->loop || score->rounds > 0;
-    if (!repeats || !(length > 0) || t < begin)
+    if (!(length > 0) || t < begin)
         return 0;
     double round = fmin(floor((t - begin) / length + ROUND_ROUNDING), MOST_ROUNDS);
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
@@ -518,7 +519,7 @@ double himc_planner_score_touch(const planner_score *score, int round, const him
 
 double himc_planner_score_beat_at(const planner_score *score, double t)
 {
-    double begun = score->origin +
-                   himc_planner_score_round_at(score, t) * himc_planner_score_round_length(score);
-    return himc_score_beat(score->tempi, score->tempo_count, t - begun);
+    int round = himc_planner_score_round_at(score, t);
+    double begun = round == 0 ? 0 : round * himc_planner_score_round_length(score);
+    return himc_score_beat(score->tempi, score->tempo_count, t - (score->origin + begun));
 }
