@@ -509,6 +509,19 @@ static void test_slashes_are_counted_and_not_played(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 slash that stands for notes"), made.report);
 }
 
+// the line behind the words says how long; then the tempo stays
+static void test_a_ritardando_ends_with_its_line(void)
+{
+#define LINE(type) DIRECTION("<dashes type='" type "'/>")
+    PLAY(BAR(1, FOUR TEMPO(100) "<direction><direction-type><words>rit.</words></direction-type>"
+                                "<direction-type><dashes type='start'/></direction-type>"
+                                "</direction>" C3(8, "") C3(8, ""))
+             BAR(2, LINE("stop") C3(8, "") C3(8, "")) BAR(3, C3(16, "")));
+    TEST_ASSERT_TRUE(time_between(2, 4) > time_between(0, 2) * 1.05);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6, time_between(4, 6), time_between(8, 10));
+    TEST_ASSERT_FLOAT_WITHIN(0.5, 75, bpm_at(5));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -538,5 +551,6 @@ int main(void)
     RUN_TEST(test_eighths_swing_and_what_is_finer_does_not);
     RUN_TEST(test_what_belongs_to_a_note_swings_with_it);
     RUN_TEST(test_a_gliss_of_a_line_with_words_is_one);
+    RUN_TEST(test_a_ritardando_ends_with_its_line);
     return UNITY_END();
 }

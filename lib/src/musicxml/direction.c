@@ -213,7 +213,7 @@ static void read_wedge(music_reader *r, const xml_node *wedge, double beat)
     }
 }
 
-// a line behind words about tuning is a pedal's
+// a line behind words about tuning is a pedal's, behind those of a ritardando it says how long
 static void read_line(music_reader *r, const xml_node *dashes, double beat, int first)
 {
     const music *m = r->music;
@@ -226,12 +226,17 @@ static void read_line(music_reader *r, const xml_node *dashes, double beat, int 
         m->signs[m->sign_count - 1].line = line;
         r->line[line - 1] = false;
     }
-    for (int i = first; i < m->sign_count && himc_xml_has(dashes, "type", "start"); i++)
+    if (himc_xml_has(dashes, "type", "stop") && r->ramp[line - 1])
+        himc_music_sign(r, beat, MUSIC_TEMPO_SHARE, 1);
+    r->ramp[line - 1] = false;
+    for (int i = first; i < m->sign_count && himc_xml_has(dashes, "type", "start"); i++) {
+        r->ramp[line - 1] |= m->signs[i].meaning == MUSIC_TEMPO_RAMP;
         if (m->signs[i].meaning == MUSIC_TUNING || m->signs[i].meaning == MUSIC_GLISS) {
             m->signs[i].meaning = MUSIC_GLISS;
             m->signs[i].line = line;
             r->line[line - 1] = true;
         }
+    }
 }
 
 // a picture of mallets
@@ -299,7 +304,7 @@ static void read_type(music_reader *r, const xml_node *d, const xml_node *next, 
         read_wedge(r, d, beat);
     else if (own && himc_xml_is(d, "percussion"))
         read_percussion(r, d, beat);
-    else if (own && (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket")))
+    else if (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket"))
         read_line(r, d, beat, by->first);
     else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
         himc_music_sign(r, beat, MUSIC_DAMP, 0);

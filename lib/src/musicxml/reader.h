@@ -17,6 +17,7 @@ typedef struct music_reader {
     int transpose;                   ///< (semitones)
     int fifths;                      ///< of the key: sharps, below 0 flats
     bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
+    bool ramp[MUSIC_LINES_MAX];      ///< the same of a ritardando or accelerando
     int head;                        ///< the first note of a chord, -1: it is left out
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
     int lane;                        ///< of a direction
