@@ -238,7 +238,7 @@ PAGE := $(if $(wildcard /usr/bin/clang-16),$(if $(wildcard /usr/lib/wasm32-wasi/
 MEASURE := $(BUILD)/tools/research/papers/measure
 
 check: all units $(MEASURE) $(WATCH) $(PAGE) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
-	@HIMC_BUILD=$(BUILD) tests/run.sh $(SCRIPTS) $(UNIT) $(FUZZ)
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(SCRIPTS) $(UNIT) $(FUZZ)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
