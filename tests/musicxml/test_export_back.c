@@ -26,10 +26,9 @@ static void parse(const char *words)
 
 static void read_back(himc_score_maker *make)
 {
-    midi_score made;
     double lead = 0;
     count = 0;
-    if (!make(&made, text.bytes, text.size, "back", NULL, &error))
+    if (!import_as(make, NULL))
         return;
     himc_score *part = himc_score_parse(made.text, "back", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(part, error.text);
@@ -40,7 +39,6 @@ static void read_back(himc_score_maker *make)
         back[count++].beat -= lead;
     }
     himc_score_free(part);
-    himc_midi_score_free(&made);
 }
 
 static bool is_same(const himc_stroke *a, const himc_stroke *b)
@@ -122,8 +120,7 @@ static void test_pedals_come_back_as_words(void)
           "stroke 8 right legato f low; at 9 second muffle 1; stroke 12 left legato f second;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>D2 muta in E2</words>"));
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>coperto</words>"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "low tune D2;"), made.text);
     const char *at = strstr(made.text, "low gliss E2 0.25;");
     TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
@@ -131,7 +128,6 @@ static void test_pedals_come_back_as_words(void)
         at--;
     // at beat 4 of the score, after a second of the file's own
     TEST_ASSERT_DOUBLE_WITHIN(0.3, 5, atof(at + 3));
-    himc_midi_score_free(&made);
 }
 
 static void test_ornaments_rolls_spots_and_dynamics_are_written(void)
@@ -199,18 +195,15 @@ static void test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s(void)
     static himc_score_maker *const make[] = {himc_music_import, himc_midi_import};
     parse("setup kit; stroke 1 left legato mf rim hats; stroke 2 foot legato f hats;");
     for (int i = 0; i < 2; i++) {
-        midi_score made;
         midi_options options = {.choice = MIDI_DRUMS};
         if (i == 1) {
             free(text.bytes);
             text = (himc_text_lines){0};
             TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
         }
-        TEST_ASSERT_TRUE_MESSAGE(make[i](&made, text.bytes, text.size, "back", &options, &error),
-                                 error.text);
+        TEST_ASSERT_TRUE_MESSAGE(import_as(make[i], &options), error.text);
         TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "pedal 0"), made.text);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "foot legato"), made.text);
-        himc_midi_score_free(&made);
     }
 }
 
@@ -224,12 +217,10 @@ static void test_a_gliss_comes_back_as_a_gliss(void)
           "at 4 low gliss E2 2; at 9 low gliss D2 1; at 9 second gliss B2 .5;"
           "at 12 low gliss F2 1.5;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. D2 to E2</words>"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     for (int i = 0; i < 4; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, lines[i]), made.text);
     TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "damp"), made.text); // it is heard
-    himc_midi_score_free(&made);
     read_back(himc_music_import);
     expect_same("gliss");
 }
@@ -250,11 +241,9 @@ static void test_a_choked_cymbal_is_choked_again(void)
 {
     parse("setup kit; tempo 120; stroke 0 right legato f crash; at 1 crash damp 1;"
           "at 1.5 crash damp 0; stroke 2 right legato f crash; stroke 4 left legato f snare;");
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "at 3 crash damp 1;"), made.text);
     TEST_ASSERT_NULL(strstr(strstr(made.text, "damp 1;") + 1, "damp 1;"));
-    himc_midi_score_free(&made);
 }
 
 static void test_a_stroke_on_no_drum_of_the_score_is_refused(void)
@@ -274,11 +263,9 @@ static void test_a_gliss_keeps_its_octave_and_its_drum(void)
           "stroke 4 left legato f low; stroke 5 right legato f third; at 6 low gliss C3 1;"
           "stroke 8 left legato f low; at 9 third gliss G3 1; stroke 12 right legato f third;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. third C3 to G3</words>"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     for (int i = 0; i < 3; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, lines[i]), made.text);
-    himc_midi_score_free(&made);
     read_back(himc_music_import);
     expect_same("gliss");
     for (int i = 0; i < count; i++)
@@ -326,9 +313,8 @@ static void test_what_rings_and_what_a_hand_damps_come_back(void)
     TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
     static const char *const lines[] = {"second damp 1;", "low damp 1;", "low damp 1;"};
     static const double beats[] = {2.5, 9.5, 14};
-    midi_score made;
     double lead = 0;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     sscanf(strstr(made.text, "beat 0 of the file"), "beat 0 of the file is beat %lf", &lead);
     const char *at = made.text;
     for (int i = 0; i < 3; i++) {
@@ -341,7 +327,6 @@ static void test_what_rings_and_what_a_hand_damps_come_back(void)
         at++;
     }
     TEST_ASSERT_NULL_MESSAGE(strstr(at, "damp 1;"), at);
-    himc_midi_score_free(&made);
     read_back(himc_music_import);
     expect_same("damped");
 }
@@ -357,13 +342,11 @@ static void test_midi_has_what_rings_and_what_a_hand_damps(void)
     TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
     TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
     TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_midi_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_TRUE(import_as(himc_midi_import, NULL));
     const char *at = strstr(made.text, "at 3.5 second damp 1;"); // after a beat of its own
     TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
     TEST_ASSERT_EQUAL_PTR(strstr(made.text, "damp 1;"), strstr(at, "damp 1;"));
     TEST_ASSERT_NULL_MESSAGE(strstr(strstr(at, "1;"), "damp 1;"), made.text);
-    himc_midi_score_free(&made);
 }
 
 static void test_a_note_before_graces_rings_on_after_midi(void)
@@ -378,10 +361,8 @@ static void test_a_note_before_graces_rings_on_after_midi(void)
         score = himc_score_parse(words, "words", NULL, &error);
         TEST_ASSERT_TRUE(himc_music_notes(&notes, score, true, &error));
         TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
-        midi_score made;
-        TEST_ASSERT_TRUE(himc_midi_import(&made, text.bytes, text.size, "back", NULL, &error));
+        TEST_ASSERT_TRUE(import_as(himc_midi_import, NULL));
         TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "damp 1;"), made.text);
-        himc_midi_score_free(&made);
         tearDown();
     }
 }
@@ -392,9 +373,8 @@ static void test_a_hand_after_a_roll_damps_where_it_did(void)
     parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
           "stroke 0 right legato f second; roll 1 3 single p f low; at 5.5 low damp 1;"
           "at 6 low damp 0; stroke 10 left legato f low;");
-    midi_score made;
     double lead = 0;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     sscanf(strstr(made.text, "beat 0 of the file"), "beat 0 of the file is beat %lf", &lead);
     const char *at = strstr(made.text, "low damp 1;");
     TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
@@ -402,7 +382,6 @@ static void test_a_hand_after_a_roll_damps_where_it_did(void)
         at--;
     TEST_ASSERT_DOUBLE_WITHIN(2e-3, 5.5, atof(at + 3) - lead);
     TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "second damp 1;"), made.text);
-    himc_midi_score_free(&made);
     read_back(himc_music_import);
     expect_same("damped after a roll");
 }

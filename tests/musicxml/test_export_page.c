@@ -162,11 +162,9 @@ static void test_open_and_closed_hats_have_their_signs(void)
           "at 2.9 hats pedal 1; stroke 3 right legato f hats; stroke 4 right legato f hats;");
     TEST_ASSERT_EQUAL(1, count_of("<technical><open/><fingering>R</fingering></technical>"));
     TEST_ASSERT_EQUAL(1, count_of("<stopped/>"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL(strstr(made.text, "hats pedal 0;"));
     TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
-    himc_midi_score_free(&made);
 }
 
 // f at the end of a roll and the next ff are not one word: drawn before the barline, read at it
@@ -175,11 +173,9 @@ static void test_the_end_of_a_roll_and_the_next_dynamic_do_not_collide(void)
     parse("drum k; tempo 80; roll 0 4 single p f normal; roll 4 4 single ff ff normal;"
           "roll 8 4 single p f normal; roll 12 4 single f f normal;");
     TEST_ASSERT_EQUAL(2, count_of("<offset sound=\"no\">-"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 4 single p f "), made.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 4 single ff ff "), made.text);
-    himc_midi_score_free(&made);
 }
 
 // as the import cuts them, and no other ones
@@ -191,11 +187,9 @@ static void test_a_roll_with_a_louder_beginning_has_an_accent(void)
     TEST_ASSERT_EQUAL(1, count_of("<accent/>"));
     TEST_ASSERT_EQUAL(1, count_of("<strong-accent/>"));
     TEST_ASSERT_EQUAL(0, count_of("<tuplet"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 0.4 single f mp "), made.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 1.6 single mp mp "), made.text);
-    himc_midi_score_free(&made);
     tearDown();
     parse("drum k; tempo 120; roll 0 0.5 single mp p normal; roll 0.5 3.5 single p p normal;"
           "roll 4 0.4 single mp p normal; roll 4.4 1.6 single p f normal;");
@@ -210,12 +204,10 @@ static void test_a_flam_is_slashed_and_a_ruff_is_beamed(void)
     TEST_ASSERT_EQUAL(4, count_of("<grace/>"));
     TEST_ASSERT_EQUAL(3, count_of(">begin</beam>")); // two beams of a drag, one of a ruff
     TEST_ASSERT_EQUAL(0, count_of(">continue</beam>"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NULL(strstr(made.report, "grace"));
     TEST_ASSERT_NOT_NULL(strstr(made.text, "\ndrag "));
     TEST_ASSERT_NOT_NULL(strstr(made.text, "\nruff "));
-    himc_midi_score_free(&made);
     TEST_ASSERT_EQUAL(3, count_of("<slur type=\"start\""));
 }
 
@@ -256,12 +248,10 @@ static void test_accents_and_ghost_notes_are_signs_of_a_bar_with_one_mark(void)
     TEST_ASSERT_EQUAL(1, count_of("<mf/>"));
     TEST_ASSERT_EQUAL(2, count_of("<accent/>"));
     TEST_ASSERT_EQUAL(2, count_of("<notehead parentheses=\"yes\">"));
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "right legato f normal snare"), made.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "right accent f normal snare"), made.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "left legato pp normal snare"), made.text);
-    himc_midi_score_free(&made);
 }
 
 // each of other drums than a kit's has a place and its name before its first note
@@ -284,10 +274,8 @@ static void test_other_drums_are_apart_and_named_once(void)
         for (int k = 0; k < i; k++) // a step and its octave
             TEST_ASSERT_TRUE(strncmp(seen[i], seen[k], 46) != 0);
     }
-    midi_score made;
-    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    import_back();
     TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
-    himc_midi_score_free(&made);
 }
 
 static void test_a_tempo_on_its_way_is_a_word(void)

@@ -17,6 +17,7 @@ static himc_error error;
 static himc_score *score;
 static midi_file notes;
 static himc_text_lines text;
+static midi_score made; // of the page, read back
 
 void setUp(void)
 {
@@ -27,9 +28,21 @@ void tearDown(void)
 {
     himc_score_free(score);
     himc_midi_file_free(&notes);
+    himc_midi_score_free(&made);
     free(text.bytes);
     score = NULL;
     text = (himc_text_lines){0};
+}
+
+static inline bool import_as(himc_score_maker *make, const midi_options *options)
+{
+    himc_midi_score_free(&made);
+    return make(&made, text.bytes, text.size, "back", options, &error);
+}
+
+static inline void import_back(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(import_as(himc_music_import, NULL), error.text);
 }
 
 #endif

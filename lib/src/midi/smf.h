@@ -71,7 +71,7 @@ typedef enum midi_order_kind {
     MIDI_MALLET,
     MIDI_WIRES,
     MIDI_PEDAL, ///< of a vibraphone: it is up for a moment
-    MIDI_DAMP ///< of `himc export`; value: the note's key
+    MIDI_DAMP   ///< of `himc export`; value: the note's key
 } midi_order_kind;
 
 /// What the player is told between notes, by MusicXML.

@@ -28,6 +28,7 @@ enum { OMIT = HIMC_HANDS };
 #define ACROSS_TIME 0.3 // ... and meet if that one has struck so shortly before (s)
 #define SAME_TIME 1e-7  // (beats)
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
+#define LEAST_ROLL 0.1  // of a roll that gives way (s), or its half; chosen
 #define MOST_CUTS 16    // strokes among which the parts of a roll are looked for; chosen
 #define CUT_TIME 1e-3   // from one part of a roll to the next (s)
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
@@ -108,7 +109,7 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
     if (before && before->roll.length > 0) {
         double begin = roll_begin(part, state->key[hand]), end = himc_midi_stroke_end(before);
-        double left = begin + fmin(0.5 * (end - begin), ROLL_STROKE);
+        double left = begin + fmin(0.5 * (end - begin), LEAST_ROLL);
         s.gap = fmax(s.gap, fmin(to.at - left, s.same_spot ? AGAIN_TIME : leap));
     }
     // on one spot 0.055 s, as the planner refuses 0.04 s

@@ -46,12 +46,17 @@ static double pedal_time(int semitones)
     return fmin(0.15 + 0.05 * abs(semitones), 0.6);
 }
 
-// when a drum's pedal moves for so long that it is there by then: when its note has ended, or
-// earlier, if it rings no more, for want of time (s)
+// when a drum's pedal can move (s)
+static double pedal_free(const midi_state *state, int drum)
+{
+    return fmax(state->ready[drum], state->foot);
+}
+
+// when it begins to, if it takes `time` and is to be there `by` then: at the end of the drum's
+// note, or earlier for want of time (s)
 static double pedal_begin(const midi_state *state, int drum, double time, double by)
 {
-    double late = fmin(state->sounds[drum], by - time);
-    return fmax(fmax(state->ready[drum], state->foot), late);
+    return fmax(pedal_free(state, drum), fmin(state->sounds[drum], by - time));
 }
 
 // the pitch of a class (of key `pitch`) nearest to `key` that a drum has; -1: none
@@ -126,7 +131,7 @@ static void follow_orders(const midi_part *part, int first, int count, double un
         else if (drum >= 0 && !o->glides)
             begin = fmax(begin, fmin(state->sounds[drum], until - time));
         if (drum >= 0 && !o->glides && begin + time > until) // the word stands at the note
-            begin = fmax(fmin(begin, until - time), fmax(state->ready[drum], state->foot));
+            begin = fmax(fmin(begin, until - time), pedal_free(state, drum));
         end = begin + time;
         if (o->from % 128 != 12 && !o->glides && begin + FASTEST_PEDAL <= until)
             end = fmin(end, until);

@@ -91,6 +91,23 @@ typedef struct directed {
     const char *name; ///< ... and the first of them, as the document has it
 } directed;
 
+// Mallets in the name of an instrument ("wood block"), which are no change of them. `instructs`: the
+// name, not what is in brackets behind it, asks for something else, too.
+static int count_mallets(const char *text, bool *instructs)
+{
+    char part[64];
+    music_meaning meaning[8];
+    double unused[8];
+    int mallets = 0;
+    size_t begin, length = himc_music_named(text, &begin);
+    himc_format(part, sizeof part, "%.*s", (int)length, text + begin);
+    int found = himc_music_words(part, 8, meaning, unused);
+    for (int i = 0; i < found; i++)
+        mallets += meaning[i] == MUSIC_MALLET;
+    *instructs = found > mallets;
+    return mallets;
+}
+
 // true if it has a dynamic
 static bool read_words(music_reader *r, const directed *by)
 {
@@ -110,23 +127,12 @@ static bool read_words(music_reader *r, const directed *by)
     }
     for (size_t i = 0; i == 0 || small[i - 1]; i++)
         small[i] = (char)(i + 1 < sizeof small ? tolower((unsigned char)text[i]) : 0);
-    bar->said = himc_music_times(small) ? himc_music_times(small) : bar->said;
+    int times = himc_music_times(small);
+    bar->said = times ? times : bar->said;
     int count = himc_music_words(text, 8, meaning, value), key;
-    bool bare = false; // the name of an instrument, which may have that of a mallet in it
+    bool bare = false, instructs = count > 0;
     bool name = himc_music_change(text, &key, &bare) != MIDI_ANY && bare;
-    bool instructs = false; // the name, not what is in brackets behind it
-    int mallets = 0;        // that are a part of it
-    if (name) {
-        char part[64];
-        music_meaning meant[8];
-        double unused[8];
-        size_t begin, length = himc_music_named(text, &begin);
-        himc_format(part, sizeof part, "%.*s", (int)length, text + begin);
-        int found = himc_music_words(part, 8, meant, unused);
-        for (int i = 0; i < found; i++)
-            mallets += meant[i] == MUSIC_MALLET;
-        instructs = found > mallets;
-    }
+    int mallets = name ? count_mallets(text, &instructs) : 0;
     bar->coda |= is_coda(text) && !sound;
     if (count == 0 && by->bold && !name) // a ritardando ends at words of tempo that are unknown
         himc_music_sign(r, beat, MUSIC_TEMPO_SHARE, 1);
@@ -148,8 +154,7 @@ static bool read_words(music_reader *r, const directed *by)
     }
     const int rows = r->instruments.count;
     if (own)
-        himc_music_instruments_change(&r->instruments, r->lane / 100, text,
-                                      name ? instructs : count > 0);
+        himc_music_instruments_change(&r->instruments, r->lane / 100, text, instructs);
     if (r->instruments.count > rows) // the text ends with the direction
         r->instruments.row[rows].name = by->name;
     return dynamic;

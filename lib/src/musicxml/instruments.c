@@ -1,7 +1,7 @@
 /// instruments.c: the instruments of a part, and which of them a written note is for.
 ///
-/// A row for each score-instrument, by its sound, its name, then its MIDI instrument; without any
-/// by the part's name. Words add rows. A name that is no instrument here is kept: its notes are
+/// A row for each score-instrument, by its name, its sound, then its MIDI instrument; without any by
+/// the part's name. Words add rows. A name that is no instrument here is kept: its notes are
 /// told by it. Invariant: there is a first row.
 #include "musicxml/instruments.h"
 
@@ -51,35 +51,16 @@ void himc_music_places(const bool used[MIDI_KEY_COUNT], int place[MIDI_KEY_COUNT
 {
     static const int staff[] = {79, 77, 76, 74, 72, 71, 69, 67, 65};
     enum { PLACES_OF_STAFF = sizeof staff / sizeof *staff, BLOCK = MIDI_LOW_TEMPLE_BLOCK };
-    // from high to low
-    static const int sounds[] = {80,
-                                 81,
-                                 67,
-                                 68,
-                                 MIDI_HIGH_COWBELL,
-                                 56,
-                                 MIDI_LOW_COWBELL,
-                                 75,
-                                 76,
-                                 MIDI_MIDDLE_BLOCK,
-                                 77,
-                                 BLOCK + 4,
-                                 BLOCK + 3,
-                                 BLOCK + 2,
-                                 BLOCK + 1,
-                                 BLOCK,
-                                 MIDI_TEMPLE_BLOCKS,
-                                 54,
-                                 60,
-                                 61,
-                                 65,
-                                 66,
-                                 62,
-                                 63,
-                                 64,
-                                 MIDI_BASS_DRUM,
-                                 MIDI_TAM_TAM};
-    int left[PLACES_OF_STAFF], free = 0, count = 0, next = 0;
+    // clang-format off
+    static const int sounds[] = { // from high to low
+        80, 81, 67, 68,                          // triangle, agogos
+        MIDI_HIGH_COWBELL, 56, MIDI_LOW_COWBELL,
+        75, 76, MIDI_MIDDLE_BLOCK, 77,           // claves, wood blocks
+        BLOCK + 4, BLOCK + 3, BLOCK + 2, BLOCK + 1, BLOCK, MIDI_TEMPLE_BLOCKS,
+        54, 60, 61, 65, 66, 62, 63, 64,          // tambourine, bongos, timbales, congas
+        MIDI_BASS_DRUM, MIDI_TAM_TAM};
+    // clang-format on
+    int left[PLACES_OF_STAFF], room = 0, count = 0, next = 0;
     bool metal, taken[128] = {false};
     for (int key = 0; key < MIDI_KEY_COUNT; key++) {
         place[key] = himc_music_place(key, &metal);
@@ -91,10 +72,10 @@ void himc_music_places(const bool used[MIDI_KEY_COUNT], int place[MIDI_KEY_COUNT
         taken[place[key]] |= used[key] && !others[key];
     for (int i = 0; i < PLACES_OF_STAFF; i++)
         if (!taken[staff[i]])
-            left[free++] = staff[i];
+            left[room++] = staff[i];
     for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
         if (others[sounds[i]])
-            place[sounds[i]] = left[(2 * next++ + 1) * free / (2 * count)];
+            place[sounds[i]] = left[(2 * next++ + 1) * room / (2 * count)];
 }
 
 int himc_music_staff(const xml_node *node)
@@ -155,8 +136,8 @@ static void read_instrument(music_instruments *of, const xml_node *list, const x
         made->name = himc_music_names(name[i]) ? name[i] : "";
     made->drum = himc_music_drum(name[1]);
     // only the name of the one instrument of a part may be unknown: the part's says what it is
-    bool only = !himc_xml_next(himc_xml_child(list, "score-instrument")) &&
-                (part != MIDI_DRUMS || part_key >= 0);
+    bool single = !himc_xml_next(himc_xml_child(list, "score-instrument")),
+         only = single && (part != MIDI_DRUMS || part_key >= 0);
     const xml_node *midi = himc_xml_child(list, "midi-instrument");
     while (midi && !himc_xml_has(midi, "id", made->id))
         midi = himc_xml_next(midi);
@@ -183,8 +164,7 @@ static void read_instrument(music_instruments *of, const xml_node *list, const x
     }
     if (made->choice == MIDI_DRUMS)
         made->names = list_names(name[1], made->of);
-    if (made->choice == MIDI_DRUMS && made->names < 2 &&
-        !himc_xml_next(himc_xml_child(list, "score-instrument")))
+    if (made->choice == MIDI_DRUMS && made->names < 2 && single)
         made->names = list_names(himc_xml_text(list, "part-name"), made->of);
 }
 

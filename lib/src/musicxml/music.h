@@ -22,10 +22,10 @@ typedef struct music_bar {
     bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
     int times;    ///< of `backward`, 2 by default
     double hold;  ///< length of its last note, which a fermata over the barline holds; 0: none
-    double split; ///< beat of a repeat in it; 0: none
-    bool split_back, split_on;
-    int said;         ///< the same as words say it, in the bar or before; 0: none do
-    unsigned endings; ///< bit k: it is played the k-th time, from 1; 0: always
+    double split; ///< beat of a repeat in it (beats); 0: none
+    bool split_back, split_on; ///< one ends there, begins there
+    int said;                  ///< the same as words say it, in the bar or before; 0: none do
+    unsigned endings;          ///< bit k: it is played the k-th time, from 1; 0: always
 } music_bar;
 
 typedef enum music_tremolo {

@@ -53,7 +53,7 @@ typedef enum music_meaning {
     MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note; -key: the drum of that key here
     MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
     MUSIC_DAMP,        ///< what sounds is damped here
-    MUSIC_PEDAL,       ///< it goes up here
+    MUSIC_PEDAL,       ///< a vibraphone's goes up here
     MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood
     MUSIC_MUFFLE,      ///< value: 1 or 0
     MUSIC_WIRES,       ///< value: 1 or 0

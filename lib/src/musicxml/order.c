@@ -14,7 +14,7 @@
 #define MOST_PLAYED 60000 // bars; chosen: a day of music
 #define SAME 1e-6         // (beats)
 
-// the bars `to` which each of a music goes; one with a repeat in it is two
+// where a place is when each bar with a repeat in it has become two; `to`: the new bar of each
 static void split_place(const music *m, const int *to, music_place *at)
 {
     const music_bar *bar = &m->bars[at->bar];

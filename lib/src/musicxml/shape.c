@@ -6,11 +6,11 @@
 /// strokes through the stem are measured, as many as written; three are a roll from FAST strokes a
 /// second on, more are always one; a trill is one. A roll is cut where its dynamic bends, and where
 /// another one begins or ends: two of one length at a time are played together, each hand on its
-/// drum (planner_roll.c). A stroke on another drum takes a hand from a roll, which goes on when it
-/// is back. Grace notes on the drum of their note are its flam, drag or ruff; others,
-/// and those before a roll, are strokes of their own before the beat. A chosen number has no
-/// published source. Invariant: each note but a tied one makes at least one stroke, or is counted
-/// as omitted.
+/// drum or bar (planner_roll.c), as are a trill on bars and two notes in turn that are too fast. A
+/// stroke on another drum takes a hand from a roll, which goes on when it is back. One or two grace
+/// notes on the drum of their note are its flam, drag or ruff; others, and those before a roll, are
+/// strokes of their own before the beat. A chosen number has no published source. Invariant: each
+/// note but a tied one makes at least one stroke, or is counted as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"

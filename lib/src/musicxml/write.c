@@ -43,7 +43,7 @@ typedef struct writer {
     staff staves[MIDI_CHOICES], *now;
     int staff_count;
     int place[MIDI_KEY_COUNT]; ///< of drums: where they are written
-    bool name[MIDI_KEY_COUNT]; ///< ... before their first note
+    bool name[MIDI_KEY_COUNT]; ///< ... and whether their name is yet to be, at their first note
     const midi_bar *bar;       ///< the present one, ...
     long begin, end;           ///< ... (ticks)
 } writer;
