@@ -67,8 +67,8 @@ typedef enum partials_part { PARTIALS_EARLY, PARTIALS_LATE, PARTIALS_LAST } part
 
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
-/// energy that least squares leave in a narrow band, in a `room` of that T60 (s; 0: none). False with
-/// the reason, without memory.
+/// energy that least squares leave in a narrow band, in a `room` of that T60 (s; 0: none). False
+/// with the reason, without memory.
 bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
                      double apart, const double *shift, int shifts, const double *decay, int decays,
                      double *out, himc_error *error);

@@ -1,7 +1,7 @@
 /// instruments.c: the instruments of a part, and which of them a written note is for.
 ///
-/// A row for each score-instrument, by its name, its sound, then its MIDI instrument; without any by
-/// the part's name. Words add rows. A name that is no instrument here is kept: its notes are
+/// A row for each score-instrument, by its name, its sound, then its MIDI instrument; without any
+/// by the part's name. Words add rows. A name that is no instrument here is kept: its notes are
 /// told by it. Invariant: there is a first row.
 #include "musicxml/instruments.h"
 
