@@ -1,13 +1,14 @@
 /// fit_drum.c: each size of timpano, tuned as the spectrum suggests (fit_comb.c), is set beside the
 /// partials found.
 ///
-/// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
-/// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
-/// of that. So the size whose own modes fit best is the drum's, above all those that outlast the
-/// room; all of its partials tune it. What the air takes follows from both; the losses S0 and S1
-/// are the rest. A room blurs each partial, so the last 0.1 % of the tuning and the losses are those
-/// at which all of the drum's pairs are likeliest together, late, in narrow bands (partials_likely).
-/// A pair that rings no longer than the room is not used: the room would hold it up.
+/// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch:
+/// a size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a
+/// tenth of that. So the size whose own modes fit best is the drum's, above all those that outlast
+/// the room; all of its partials tune it. What the air takes follows from both; the losses S0 and
+/// S1 are the rest. A room blurs each partial, so the last 0.1 % of the tuning and the losses are
+/// those at which all of the drum's pairs are likeliest together, late, in narrow bands
+/// (partials_likely). A pair that rings no longer than the room is not used: the room would hold
+/// it up.
 #include "fit_drum.h"
 
 #include <math.h>
