@@ -542,16 +542,39 @@ static void test_toms_of_a_kit_are_apart_where_they_are_written(void)
     expect_drums(4, drums);
 }
 
-// not while its note is written, if there is time before the next
+// not while its note is written, if there is time before the next, wherever the word stands
 static void test_a_pedal_waits_for_the_end_of_a_long_note(void)
 {
-    load(HEAD PART("Timpani") BAR(1, FOUR TEMPO(60) NOTE(C, 3, 16, "")) BAR(2, NOTE(F, 2, 16, ""))
-             BAR(3, REST(16)) BAR(4, WORDS("C muta in D") NOTE(D, 3, 16, "")) TAIL);
-    double beat = -1;
-    for (int i = 0; i < score->change_count; i++)
-        if (score->changes[i].command.id == HIMC_COMMAND_GLISS)
-            beat = score->changes[i].beat - lead();
-    TEST_ASSERT_TRUE_MESSAGE(beat >= 4 && beat < 12, made.text);
+    static const char *const words[] = {"C muta in D", "muta in D", ""};
+    for (int i = 0; i < 3; i++) {
+        char text[4096];
+        snprintf(
+            text, sizeof text,
+            HEAD PART("Timpani") "<measure number='1'>" FOUR TEMPO(60) NOTE(
+                C, 3, 16,
+                "") "<backup><duration>8</duration></backup><direction><direction-type><words>%s"
+                    "</words></direction-type></direction><forward><duration>8</duration>"
+                    "</forward></measure>" BAR(2, REST(16)) BAR(3, WORDS("%s") REST(16))
+                        BAR(4, NOTE(D, 3, 16, "")) TAIL,
+            words[i], i < 2 ? "" : "muta in D");
+        load(text);
+        double beat = -1;
+        for (int k = 0; k < score->change_count; k++)
+            if (score->changes[k].command.id == HIMC_COMMAND_GLISS)
+                beat = score->changes[k].beat - lead();
+        TEST_ASSERT_TRUE_MESSAGE(beat >= (i < 2 ? 4 : 8) && beat < 12, made.text);
+    }
+}
+
+// the note that a line leads to is struck on the drum that has glided, though another has its pitch
+static void test_a_line_ends_on_the_drum_that_glides(void)
+{
+#define SLIDE(type) "<notations><slide type='" type "' number='1'/></notations>"
+    load(HEAD PART("Timpani") BAR(1, FOUR TEMPO(90) C3(4, "") REST(12))
+             BAR(2, NOTE(F, 2, 8, SLIDE("start")) NOTE(C, 3, 8, SLIDE("stop"))) TAIL);
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(2)->drum);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
 }
 
 // found by the fuzzer: a gliss down to a pitch that no drum has
@@ -588,6 +611,7 @@ int main(void)
     RUN_TEST(test_words_of_staff_one_are_of_notes_without_a_staff);
     RUN_TEST(test_toms_of_a_kit_are_apart_where_they_are_written);
     RUN_TEST(test_a_pedal_waits_for_the_end_of_a_long_note);
+    RUN_TEST(test_a_line_ends_on_the_drum_that_glides);
     RUN_TEST(test_a_gliss_far_beyond_a_drum_is_counted);
     return UNITY_END();
 }
