@@ -230,8 +230,6 @@ static void test_bank_kick_adds_velocity(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[0], v[1]);
 }
 
-// three readouts of different gains that share a form, and one of the second's weights alone, by
-// one version of the loops and in blocks of `size`
 static void test_bank_oscillators_set_to_rest_are_missed_by_140_dB_at_most(void)
 {
     enum { MANY = 200, SECONDS = 3 };
@@ -263,6 +261,8 @@ static void test_bank_oscillators_set_to_rest_are_missed_by_140_dB_at_most(void)
     himc_bank_free(large);
 }
 
+// three readouts of different gains that share a form, and one of the second's weights alone, by
+// one version of the loops and in blocks of `size`
 static void hear_alike(const himc_bank_kernel *kernel, bool film, int size, double out[4][1000])
 {
     enum { MANY = 200, LENGTH = 1000, PUSHED = 125 };
@@ -316,7 +316,7 @@ static void test_bank_readouts_that_are_alike_are_as_alone_in_any_blocks_on_ever
         for (int i = 0; i < 1000; i++)
             most = fmax(most, fabs(expected[3][i]));
         for (int i = 0; i < 1000; i++)
-            TEST_ASSERT_DOUBLE_WITHIN(1e-12 * most, expected[3][i], expected[1][i]);
+            TEST_ASSERT_DOUBLE_WITHIN(6e-7 * most, expected[3][i], expected[1][i]); // -124 dB
         for (int version = 0; himc_bank_kernel_version(version); version++)
             for (int size = 1; size <= 125; size *= 5) {
                 hear_alike(himc_bank_kernel_version(version), film, size, got);

@@ -21,14 +21,25 @@
 #define LAW(ID, name, word, accelerates) {himc_law_##name, accelerates},
 const himc_law_row himc_laws[HIMC_LAW_COUNT] = {HIMC_LAWS(LAW)};
 
+// bit by bit; memcmp takes a byte at a time in a page
+static bool same(const void *a, const void *b, size_t size)
+{
+    uint64_t differs = 0, x[2];
+    for (size_t i = 0; i < size; i += sizeof *x) {
+        memcpy(&x[0], (const char *)a + i, sizeof *x);
+        memcpy(&x[1], (const char *)b + i, sizeof *x);
+        differs |= x[0] ^ x[1];
+    }
+    return differs == 0;
+}
+
 // whether the legs have the same targets
 static bool same_legs(const himc_posture_motion *a, const himc_posture_motion *b)
 {
     enum { FIRST = HIMC_LEGS - 1, COUNT = HIMC_JOINTS - FIRST };
-    return memcmp(a->joint + FIRST, b->joint + FIRST, COUNT * sizeof *a->joint) == 0 &&
-           memcmp(a->rate + FIRST, b->rate + FIRST, COUNT * sizeof *a->rate) == 0 &&
-           memcmp(a->acceleration + FIRST, b->acceleration + FIRST,
-                  COUNT * sizeof *a->acceleration) == 0;
+    return same(a->joint + FIRST, b->joint + FIRST, COUNT * sizeof *a->joint) &&
+           same(a->rate + FIRST, b->rate + FIRST, COUNT * sizeof *a->rate) &&
+           same(a->acceleration + FIRST, b->acceleration + FIRST, COUNT * sizeof *a->acceleration);
 }
 
 // what the legs are asked for, if they sleep and it is known
