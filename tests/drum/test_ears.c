@@ -206,6 +206,39 @@ static void test_ears_hear_the_same_in_blocks_of_any_size(void)
     }
 }
 
+// who goes away hears after a while what he would if he had always been there, and, back again, what
+// he heard before
+static void test_ears_that_have_moved_hear_as_if_they_had_always_been_there(void)
+{
+    enum { STAY = PLENTY / 4 };
+    static double row[HIMC_RAYS][PLENTY], out[3][HIMC_EARS][PLENTY];
+    const himc_listener near = facing(1, 0, 1), far = facing(14, 0, 1);
+    const himc_ear_paths paths[] = {himc_ears_trace(&near, &place), himc_ears_trace(&far, &place)};
+    for (int k = 0; k < HIMC_RAYS; k++)
+        for (int i = 0; i < PLENTY; i++)
+            row[k][i] = 0.01 * sin(0.3 * i * (1 + 1e-4 * i) + k);
+    for (int who = 0; who < 3; who++) { // the last one goes from near to far and back
+        memset(&ears, 0, sizeof ears);
+        for (int part = 0; part < 4; part++) {
+            const himc_ear_paths *at = &paths[who < 2 ? who : part == 1 || part == 2];
+            double *rays[HIMC_RAYS], *rows[HIMC_EARS];
+            for (int k = 0; k < HIMC_RAYS; k++)
+                rays[k] = row[k] + part * STAY;
+            for (int k = 0; k < HIMC_EARS; k++)
+                rows[k] = out[who][k] + part * STAY;
+            if (part == 0 || who == 2)
+                himc_ears_set(&ears, at, &(himc_walls){0}, RATE);
+            himc_ears_hear(&ears, STAY, rays, rows, 1);
+        }
+    }
+    for (int k = 0; k < HIMC_EARS; k++)
+        for (int i = 0; i < STAY / 4; i++) {
+            int far_end = 3 * STAY - 1 - i, near_end = PLENTY - 1 - i;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, out[1][k][far_end], out[2][k][far_end]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, out[0][k][near_end], out[2][k][near_end]);
+        }
+}
+
 // largest second difference of `x`
 static double curvature(const double *x, int n)
 {
@@ -515,6 +548,7 @@ int main(void)
     RUN_TEST(test_ears_see_a_tilted_head_as_it_lies);
     RUN_TEST(test_a_drum_that_nobody_listens_to_has_no_ears_and_takes_less_than_2_5_megabytes);
     RUN_TEST(test_ears_hear_the_same_in_blocks_of_any_size);
+    RUN_TEST(test_ears_that_have_moved_hear_as_if_they_had_always_been_there);
     RUN_TEST(test_ears_do_not_click_when_they_come_move_and_leave);
     RUN_TEST(test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left);
     RUN_TEST(test_ears_find_a_drum_that_was_moved);

@@ -34,6 +34,7 @@
 #define SHADOW_ANGLE 1.2   // 180/150 degrees: the darkest place lies before the far end; as there
 #define SHADOW_MEAN 1.05   // as there, (1 + 0.1/2)
 #define SHADOW_DEPTH 0.95  // as there, (1 - 0.1/2)
+#define KEPT 2             // fades; chosen: 10 ms, which a listener who moves by 3 m needs
 #define FLOOR 0.9          // chosen: a wooden floor returns nine tenths
 #define FLOOR_CORNER 4e3   // (Hz) chosen: what it takes of high frequencies
 #define BELOW 0.7          // of the power, below the rim
@@ -161,6 +162,21 @@ static int longest(const himc_ear_taps *taps)
     return most;
 }
 
+// Of the lines so much is in use: what the paths reach back, and some for the next ones. A line
+// that gets longer knows nothing older.
+static void set_span(himc_ears *e, const himc_ear_taps *taps)
+{
+    int before = e->span, needed = longest(taps) + 2 * HIMC_ROOM_RUN + (int)(KEPT / e->step);
+    e->span = before > 0 ? before : 1;
+    while (e->span < needed && e->span < HIMC_EARS_LINE)
+        e->span *= 2;
+    for (int k = 1; k <= e->span && e->span > before; k++) {
+        int at = (e->at - k) & (e->span - 1), was = (e->at - k) & (before - 1);
+        for (int ray = 0; ray < HIMC_RAYS; ray++)
+            e->line[ray][at] = k <= before ? e->line[ray][was] : 0;
+    }
+}
+
 void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *walls, double rate)
 {
     e->step = 1 / (FADE * rate);
@@ -172,7 +188,8 @@ void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *
     }
     e->changes = himc_ears_heard(e);
     if (!e->changes) { // begins to listen, to an empty room
-        memset(e->line, 0, sizeof e->line);
+        e->span = 0;
+        set_span(e, &e->next);
         forget(&e->shadow[HIMC_EAR_LEFT]);
         forget(&e->shadow[HIMC_EAR_RIGHT]);
         forget(&e->floor);
@@ -201,8 +218,7 @@ bool himc_ears_at_rest(const himc_ears *e)
 static void arrive(const himc_ears *e, int ray, const himc_ear_tap *tap, int n, double *out)
 {
     double around[HIMC_ROOM_RUN + 3];
-    int first = (e->at - tap->whole - 2) & (HIMC_EARS_LINE - 1),
-        more = first + n + 3 - HIMC_EARS_LINE;
+    int first = (e->at - tap->whole - 2) & (e->span - 1), more = first + n + 3 - e->span;
     const double *x = e->line[ray] + first;
     if (more > 0) { // the line ends in between
         memcpy(around, x, (size_t)(n + 3 - more) * sizeof *x);
@@ -247,7 +263,7 @@ static void take_in(himc_ears *e, int n, double *const *ray)
     for (int i = 0; i < n; i++) {
         double left = ray[HIMC_RAY_LEFT][i], right = ray[HIMC_RAY_RIGHT][i];
         double floor = ray[HIMC_RAY_FLOOR][i];
-        int at = (e->at + i) & (HIMC_EARS_LINE - 1);
+        int at = (e->at + i) & (e->span - 1);
         bool silent = left == 0 && right == 0 && floor == 0;
         quiet = !silent ? 0 : quiet < HIMC_EARS_LINE ? quiet + 1 : quiet;
         if (quiet == AFTER)
@@ -317,6 +333,7 @@ void himc_ears_hear(himc_ears *e, int n, double *const *rays, double *const *row
             e->changes = false;
             e->before = e->now;
             e->now = e->next;
+            set_span(e, &e->now);
             e->reach = before > now ? before : now;
             e->faded = 0;
         }

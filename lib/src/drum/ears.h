@@ -76,6 +76,7 @@ typedef struct himc_ears {
     int reach;                       ///< (samples) the longest path of `before` and `now`
     himc_one_pole shadow[HIMC_EARS], floor;
     int at;     ///< in `line`, of the coming sample
+    int span;   ///< (samples) of `line` in use, a power of 2
     int silent; ///< samples without sound, so far
     double line[HIMC_RAYS][HIMC_EARS_LINE];
     himc_room room;
