@@ -75,7 +75,9 @@ UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs page pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
+# those that look at pages in a browser, which take longest
+PAGES     := $(wildcard tests/page/test_*.sh) $(addprefix tests/viewer/test_viewer_,look.sh page.sh page_edit.sh)
+SCRIPTS   := $(filter-out tests/pd/test_package.sh $(PAGES),$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -237,14 +239,21 @@ PAGE := $(if $(wildcard /usr/bin/clang-16),$(if $(wildcard /usr/lib/wasm32-wasi/
 # what docs/results/papers.md asks of the library
 MEASURE := $(BUILD)/tools/research/papers/measure
 
-check: all units $(MEASURE) $(WATCH) $(PAGE) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(SCRIPTS) $(UNIT) $(FUZZ)
+
+test-page: deps ## the tests of the pages, viewer's and himc.html, in Chromium and Firefox without a window
+	@tools/build/deps.sh tools/build/deps-viewer.txt tools/build/deps-browser.txt tools/build/deps-page.txt
+	@$(MAKE) check-page
+
+check-page: all $(PAGE) $(VIEWER)
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(PAGES)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
 check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
-	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(LONG) $(SCRIPTS) $(UNIT) $(FUZZ)
+	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(LONG) $(PAGES) $(SCRIPTS) $(UNIT) $(FUZZ)
 
 axe: ## axe-core of npm: with it the page's tests look for what shuts people out
 	@mkdir -p $(BUILD)/axe

@@ -206,8 +206,8 @@ static void test_ears_hear_the_same_in_blocks_of_any_size(void)
     }
 }
 
-// who goes away hears after a while what he would if he had always been there, and, back again, what
-// he heard before
+// who goes away hears after a while what he would if he had always been there, and, back again,
+// what he heard before
 static void test_ears_that_have_moved_hear_as_if_they_had_always_been_there(void)
 {
     enum { STAY = PLENTY / 4 };

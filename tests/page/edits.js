@@ -45,10 +45,10 @@ function editsOf(module, name, bytes, edits, seed) {
         const before = a.events.length;
         a.run(() => a.events.length > before); // the text has changed
         if (a.events[a.events.length - 1].event !== "text") return;
-        // until a quarter of a second after the stroke is there, as the page waits (edit.js)
+        // until so much is there that the page plays from before the stroke (edit.js: BEFORE, LEAD)
         let enough = Infinity;
         a.run(() => {
-            if (!a.shop.order && a.shop.focus && enough === Infinity) enough = (a.shop.focus + 0.25 + 1) / CELL;
+            if (!a.shop.order && a.shop.focus && enough === Infinity) enough = (a.shop.focus + 1 - 0.7 + 0.3) / CELL;
             return a.pcm.length >= enough;
         });
         took.push(performance.now() - began);

@@ -17,7 +17,8 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     STEP = 0.008, // between its points (s)
     STROKES = 1.5, // dots of strokes so near in time (s)
     BEFORE = 0.7, // a stroke that is changed while it plays is heard from so much before (s)
-    SOON = 0.25, // once so much after it has come (s)
+    LEAD = 0.3, // once so much of that has come (s), for more comes faster than it is played
+    SOON = 0.25, // and is looked at once so much after it has come (s)
     AT = 0.012, // a nudge so near is at the cursor (s): half a step of a key
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
@@ -688,10 +689,16 @@ export class Editor {
         this.on.changed(piece);
         this.comeBack(p);
         const w = this.waiting;
-        if (!w || this.sent.length || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
+        if (!w || this.sent.length || piece.cuts === w.cuts) return;
+        const from = Math.max(0, w.times[0] - BEFORE),
+            done = piece.sound.arrived >= w.times[1] + SOON || piece.over;
+        if (!w.heard && (done || (w.plays && piece.sound.arrived >= from + LEAD))) {
+            if (w.plays) (p.seek(1000 * from), p.play(true));
+            this.heard.push(performance.now() - w.begun);
+            w.heard = true;
+        }
+        if (!done) return;
         this.waiting = null;
-        if (w.plays) (p.seek(1000 * Math.max(0, w.times[0] - BEFORE)), p.play(true));
-        this.heard.push(performance.now() - w.begun);
         this.follow(w.to);
     }
 
