@@ -302,6 +302,17 @@ static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(vo
                              notes.said);
 }
 
+// a cymbal's key in MIDI says nothing of its end
+static void test_midi_tells_of_a_choked_cymbal(void)
+{
+    score = himc_score_parse("setup kit; tempo 120; stroke 0 right legato f crash;"
+                             "at 1 crash damp 1; stroke 2 right legato f snare;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes.said, "1 change by damp (bar 1) is not written\n"),
+                                 notes.said);
+}
+
 // a stroke rings unless a hand damps it, also after a bar's end and where its note is short
 static void test_what_rings_and_what_a_hand_damps_come_back(void)
 {
@@ -562,6 +573,7 @@ int main(void)
     RUN_TEST(test_a_gliss_keeps_its_octave_and_its_drum);
     RUN_TEST(test_what_notation_does_not_have_is_told_once_with_its_first_bar);
     RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
+    RUN_TEST(test_midi_tells_of_a_choked_cymbal);
     RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
     RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
     RUN_TEST(test_a_note_before_graces_rings_on_after_midi);

@@ -522,6 +522,14 @@ static void test_a_name_of_two_drums_is_both(void)
         }
 }
 
+// of three drums in a name two are written, each in its usual place
+static void test_a_drum_of_a_name_may_have_no_notes(void)
+{
+    load(HEAD PART("Cymbals, Snare Drum, Bass Drum")
+             BAR(1, FOUR WRITTEN("C", 5) WRITTEN("F", 4) WRITTEN("C", 5) WRITTEN("F", 4)) TAIL);
+    expect_drums(4, (const char *const[]){"snare", "bass-drum", "snare", "bass-drum"});
+}
+
 // the staff of words is 1 where there is one only, though notes do not say it
 static void test_words_of_staff_one_are_of_notes_without_a_staff(void)
 {
@@ -608,6 +616,7 @@ int main(void)
     RUN_TEST(test_drums_of_one_kind_stay_apart);
     RUN_TEST(test_names_of_instruments_decide_before_their_sounds);
     RUN_TEST(test_a_name_of_two_drums_is_both);
+    RUN_TEST(test_a_drum_of_a_name_may_have_no_notes);
     RUN_TEST(test_words_of_staff_one_are_of_notes_without_a_staff);
     RUN_TEST(test_toms_of_a_kit_are_apart_where_they_are_written);
     RUN_TEST(test_a_pedal_waits_for_the_end_of_a_long_note);

@@ -250,6 +250,15 @@ static void test_a_note_on_another_drum_after_a_roll_is_never_lost(void)
     }
 }
 
+// its softer end is short, but the hand may leave already from its louder beginning
+static void test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) NOTE(F, 2, 4, "") C3(4, "") NOTE(G, 3, 4, "") NOTE(B, 3, 4, ""))
+             BAR(2, DYNAMICS("sfz") NOTE(F, 2, 2, MARKS(3)) NOTE(B, 3, 2, "") REST(12)));
+    expect_text("6 of 6 notes for timpani are played");
+    TEST_ASSERT_EQUAL_STRING(stroke(3)->drum, stroke(6)->drum);
+}
+
 // faster than the hands could alternate on two drums stroke by stroke: each rolls on its own
 static void test_a_fast_tremolo_of_two_notes_is_a_roll_on_both(void)
 {
@@ -274,16 +283,17 @@ static void test_a_trill_on_bars_is_of_two_notes(void)
 {
 #define TRILL(more) "<notations><ornaments><trill-mark/>" more "</ornaments></notations>"
 #define KEY(fifths) "<attributes><key><fifths>" #fifths "</fifths></key></attributes>"
-    static const char *const upper[] = {"F", "F#", "F", "F#"};
+    static const char *const upper[] = {"F", "F#", "F", "F#", "E", "D#"};
     load(HEAD PART("Xylophone") BAR(1, FOUR NOTE(E, 4, 16, TRILL("")))
              BAR(2, KEY(2) NOTE(E, 4, 16, TRILL("")))
                  BAR(3, NOTE(E, 4, 16, TRILL("<accidental-mark>natural</accidental-mark>"))) BAR(
                      4, KEY(0) NOTE(E, 4, 16, TRILL("<accidental-mark>sharp</accidental-mark>")))
-                     TAIL);
-    expect_text("4 of 4 notes for xylophone are played");
-    TEST_ASSERT_EQUAL_MESSAGE(8, score->stroke_count, made.text);
-    for (int i = 0; i < 4; i++) { // in the octave that the instrument has
-        TEST_ASSERT_EQUAL('E', stroke(2 * i)->part[0]);
+                     BAR(5, KEY(-1) NOTE(D, 4, 16, TRILL("")))
+                         BAR(6, KEY(-2) NOTE(D, 4, 16, TRILL(""))) TAIL);
+    expect_text("6 of 6 notes for xylophone are played");
+    TEST_ASSERT_EQUAL_MESSAGE(12, score->stroke_count, made.text);
+    for (int i = 0; i < 6; i++) { // in the octave that the instrument has
+        TEST_ASSERT_EQUAL(i < 4 ? 'E' : 'D', stroke(2 * i)->part[0]);
         TEST_ASSERT_EQUAL(strlen(upper[i]) + 1, strlen(stroke(2 * i + 1)->part));
         TEST_ASSERT_EQUAL_STRING_LEN(upper[i], stroke(2 * i + 1)->part, strlen(upper[i]));
     }
@@ -438,6 +448,7 @@ int main(void)
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     RUN_TEST(test_a_roll_on_two_bars_has_both);
     RUN_TEST(test_a_note_on_another_drum_after_a_roll_is_never_lost);
+    RUN_TEST(test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum);
     RUN_TEST(test_a_fast_tremolo_of_two_notes_is_a_roll_on_both);
     RUN_TEST(test_a_trill_on_bars_is_of_two_notes);
     RUN_TEST(test_a_roll_that_begins_with_another_drum_is_struck_on_the_beat);

@@ -489,6 +489,18 @@ static void test_a_repeat_within_a_bar_repeats_its_first_half(void)
     expect_dynamics(7, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0, 6.0);
 }
 
+static void test_a_repeat_may_begin_within_a_bar(void)
+{
+    PLAY(BAR(
+        1, FOUR C3(8, "") "<barline location='middle'><repeat direction='forward'/></barline>" NOTE(
+               G, 2, 8, ""))
+             BAR(2, C3(16, "") "<barline location='right'><repeat direction='backward'/></barline>")
+                 BAR(3, C3(16, "")));
+    expect_beats(6, 0.0, 2.0, 4.0, 8.0, 10.0, 14.0);
+    TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(3)->drum);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
+}
+
 static void test_slashes_are_counted_and_not_played(void)
 {
 #define STYLE(in) "<attributes><measure-style>" in "</measure-style></attributes>"
@@ -531,6 +543,7 @@ int main(void)
     RUN_TEST(test_bells_have_names_in_four_languages);
     RUN_TEST(test_words_say_how_often_a_repeat_is_played);
     RUN_TEST(test_a_repeat_within_a_bar_repeats_its_first_half);
+    RUN_TEST(test_a_repeat_may_begin_within_a_bar);
     RUN_TEST(test_slashes_are_counted_and_not_played);
     RUN_TEST(test_a_metronome_mark_in_words_is_the_tempo);
     RUN_TEST(test_a_sound_or_a_sign_holds_before_the_number_of_words);
