@@ -123,6 +123,9 @@ static void test_a_roll_tied_to_a_plain_note_ends_with_a_stroke(void)
     TEST_ASSERT_EQUAL(2, score->stroke_count);
     TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(0)->ornament);
     expect_roll(1, 4, 4, 4, 4);
+    // a line that nothing ends is of the notes tied to its first
+    PLAY(BAR(1, FOUR C3(4, WAVY("start")) C3(4, "") C3(4, TIE("start")) C3(4, TIE("stop"))));
+    expect_beats(3, 0.0, 1.0, 2.0);
 }
 
 #define CHORD(step, octave, duration, more)                                           \
@@ -177,6 +180,12 @@ static void test_marks_of_a_chord_are_of_all_its_notes(void)
     PLAY(
         BAR(1, FOUR C3(8, ARTICULATION("accent")) CHORD(G, 2, 8, "") C3(8, "") CHORD(G, 2, 8, "")));
     expect_dynamics(4, 5.0, 5.0, 4.0, 4.0);
+    // a fermata: both are rolled to its end
+    PLAY(BAR(1, FOUR C3(8, "<tie type='start'/>" MARKS(3)) CHORD(G, 2, 8, "<tie type='start'/>")
+                    C3(8, "<tie type='stop'/><notations><fermata/></notations>")
+                        CHORD(G, 2, 8, "<tie type='stop'/>")));
+    TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+    expect_roll_of_two(0, 0, 4);
 }
 
 static void test_an_accent_on_a_roll_is_its_beginning(void)
@@ -283,17 +292,22 @@ static void test_a_trill_on_bars_is_of_two_notes(void)
 {
 #define TRILL(more) "<notations><ornaments><trill-mark/>" more "</ornaments></notations>"
 #define KEY(fifths) "<attributes><key><fifths>" #fifths "</fifths></key></attributes>"
-    static const char *const upper[] = {"F", "F#", "F", "F#", "E", "D#"};
+#define F_SHARP                                                                         \
+    "<note><pitch><step>F</step><alter>1</alter><octave>4</octave></pitch><duration>16" \
+    "</duration><voice>1</voice>" TRILL("") "</note>"
+    static const char *const lower = "EEEEDDFE", *const upper[] = {"F", "F#", "F", "F#",
+                                                                   "E", "D#", "G", "F#"};
     load(HEAD PART("Xylophone") BAR(1, FOUR NOTE(E, 4, 16, TRILL("")))
              BAR(2, KEY(2) NOTE(E, 4, 16, TRILL("")))
                  BAR(3, NOTE(E, 4, 16, TRILL("<accidental-mark>natural</accidental-mark>"))) BAR(
                      4, KEY(0) NOTE(E, 4, 16, TRILL("<accidental-mark>sharp</accidental-mark>")))
                      BAR(5, KEY(-1) NOTE(D, 4, 16, TRILL("")))
-                         BAR(6, KEY(-2) NOTE(D, 4, 16, TRILL(""))) TAIL);
-    expect_text("6 of 6 notes for xylophone are played");
-    TEST_ASSERT_EQUAL_MESSAGE(12, score->stroke_count, made.text);
-    for (int i = 0; i < 6; i++) { // in the octave that the instrument has
-        TEST_ASSERT_EQUAL(i < 4 ? 'E' : 'D', stroke(2 * i)->part[0]);
+                         BAR(6, KEY(-2) NOTE(D, 4, 16, TRILL(""))) BAR(7, KEY(1) F_SHARP)
+                             BAR(8, FOUR NOTE(E, 4, 16, TRILL(""))) TAIL);
+    expect_text("8 of 8 notes for xylophone are played");
+    TEST_ASSERT_EQUAL_MESSAGE(16, score->stroke_count, made.text);
+    for (int i = 0; i < 8; i++) { // in the octave that the instrument has
+        TEST_ASSERT_EQUAL(lower[i], stroke(2 * i)->part[0]);
         TEST_ASSERT_EQUAL(strlen(upper[i]) + 1, strlen(stroke(2 * i + 1)->part));
         TEST_ASSERT_EQUAL_STRING_LEN(upper[i], stroke(2 * i + 1)->part, strlen(upper[i]));
     }
