@@ -537,8 +537,16 @@ static void test_damped_notes_and_notes_that_ring(void)
     PLAY(BAR(1, FOUR C3(2, "<notations><tied type='let-ring'/></notations>") REST(14))
              BAR(2, C3(16, "")));
     TEST_ASSERT_EQUAL(0, damps());
+    PLAY(BAR(1, FOUR C3(2, "<tie type='start'/>") REST(14)) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(0, damps()); // a tie into the air
+    PLAY(BAR(1, FOUR WORDS("l.v.") C3(2, ARTICULATION("staccato")) REST(14)) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(0, damps());
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, WORDS("secco") C3(8, "") C3(8, "")));
     TEST_ASSERT_EQUAL(1, damps());
+    PLAY(BAR(1, FOUR C3(4, "") C3(4, "") DIRECTION("<damp-all/>") REST(8)));
+    TEST_ASSERT_EQUAL(1, damps()); // the last stroke
+    PLAY(BAR(1, FOUR TEMPO(240) C3(1, "") REST(15)) BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 4 * 0.15 + lead(), score->changes[0].beat); // as fast as a hand
     PLAY(BAR(1, FOUR C3(12, "") DIRECTION("<damp-all/>") REST(4)) BAR(2, REST(16)));
     TEST_ASSERT_EQUAL(1, damps());
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 3 + lead(), score->changes[0].beat);
@@ -564,6 +572,10 @@ static void test_sticking_is_kept(void)
     TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(0)->hand);
     TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(1)->hand);
     TEST_ASSERT_EQUAL(HIMC_RIGHT, stroke(2)->hand);
+    PLAY(BAR(1, FOUR C3(4, "") WORDS("L") REST(4) C3(4, "") WORDS("L") REST(4))
+             BAR(2, C3(16, ""))); // over a rest
+    TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(1)->hand);
+    TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(2)->hand);
 }
 
 static void test_spots_hold_until_the_next(void)

@@ -126,6 +126,26 @@ static void test_staves_have_their_own_words(void)
     TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(1)->spot);
     expect_text("snare wires 0;");
     TEST_ASSERT_NULL(strstr(made.text, "third wires"));
+    // what only one of them has is not the other's, whichever note comes first
+    load(PLAYED_BY(TIMPANI_AND_SNARE)
+             BAR(1, FOUR SAYS(1, "<dynamics><ff/></dynamics>") ON(1, "T", 16)
+                        BACK SAYS(2, "<words>near rim</words>") ON(2, "S", 16)) TAIL);
+    for (int i = 0; i < 2; i++) {
+        bool snare = strcmp(stroke(i)->drum, "snare") == 0;
+        TEST_ASSERT_EQUAL(snare ? HIMC_SPOT_RIM : HIMC_SPOT_NORMAL, stroke(i)->spot);
+        TEST_ASSERT_FLOAT_WITHIN(0.01, snare ? 4 : 6, 7 * stroke(i)->dynamic);
+    }
+    // a roll is not cut where the other's dynamic changes
+    load(PLAYED_BY(TIMPANI_AND_SNARE) BAR(
+        1, FOUR
+        "<note><pitch><step>D</step><octave>3</octave></pitch><duration>16"
+        "</duration><instrument id='T'/><voice>1</voice><staff>1</staff>" MARKS(
+            3) "</note>" BACK ON(2, "S", 8)
+            SAYS(
+                2,
+                "<dynamics><ff/></dynamics>") "<note><rest/><duration>8</duration><voice>2</voice><staff>2</staff>"
+                                              "</note>") BAR(2, ON(2, "S", 16)) TAIL);
+    TEST_ASSERT_EQUAL_MESSAGE(4, score->stroke_count, made.text); // both hands, one roll, the snare
 }
 
 // drums of one sort are told apart by their names, and by their places on the staff
