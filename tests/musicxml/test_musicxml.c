@@ -31,6 +31,10 @@ static void test_a_pickup_is_as_long_as_its_notes(void)
              4, "") "</measure>" BAR(1, C3(16, "")));
     expect_beats(2, 0.0, 1.0);
     expect_text("comment bar 0;");
+    PLAY(BAR(0, FOUR "<attributes><time><beats>4</beats><beat-type>4</beat-type></time>"
+                     "</attributes>" C3(4, "")) BAR(1, C3(16, "")));
+    expect_text("bars of 4/4 from beat 2");
+    expect_text("bars of 4/4 from beat 3");
 }
 
 static void test_an_empty_bar_is_as_long_as_its_time_signature(void)
@@ -298,6 +302,9 @@ static void test_tempo_marks_words_and_numbers(void)
     TEST_ASSERT_EQUAL_FLOAT(66, bpm_at(4));
     TEST_ASSERT_EQUAL_FLOAT(140, bpm_at(8));
     TEST_ASSERT_EQUAL_FLOAT(100, bpm_at(12));
+    // what comes after the last note is of others
+    PLAY(BAR(1, FOUR TEMPO(60) C3(16, "")) BAR(2, REST(16)) BAR(3, TEMPO(90) REST(16)));
+    TEST_ASSERT_EQUAL(1, score->tempo_count);
 }
 
 static void test_a_ritardando_slows_evenly_to_a_tempo(void)
@@ -547,6 +554,9 @@ static void test_damped_notes_and_notes_that_ring(void)
     TEST_ASSERT_EQUAL(1, damps()); // the last stroke
     PLAY(BAR(1, FOUR TEMPO(240) C3(1, "") REST(15)) BAR(2, C3(16, "")));
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 4 * 0.15 + lead(), score->changes[0].beat); // as fast as a hand
+    PLAY(BAR(1, FOUR TEMPO(180) WORDS("sempre secco") C3(2, "") C3(2, "") C3(2, "") C3(2, "")
+                    REST(8)));
+    TEST_ASSERT_EQUAL(1, damps()); // no time between eighths
     PLAY(BAR(1, FOUR C3(12, "") DIRECTION("<damp-all/>") REST(4)) BAR(2, REST(16)));
     TEST_ASSERT_EQUAL(1, damps());
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 3 + lead(), score->changes[0].beat);

@@ -126,6 +126,10 @@ static void test_staves_have_their_own_words(void)
     TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(1)->spot);
     expect_text("snare wires 0;");
     TEST_ASSERT_NULL(strstr(made.text, "third wires"));
+    load(PLAYED_BY(TIMPANI_AND_SNARE) BAR(1, FOUR SAYS(1, "<words>coperto</words>") ON(1, "T", 16)
+                                                 BACK ON(2, "S", 16)) TAIL);
+    expect_text("third muffle 1;");
+    TEST_ASSERT_NULL(strstr(made.text, "snare muffle"));
     // what only one of them has is not the other's, whichever note comes first
     load(PLAYED_BY(TIMPANI_AND_SNARE)
              BAR(1, FOUR SAYS(1, "<dynamics><ff/></dynamics>") ON(1, "T", 16)
@@ -354,6 +358,17 @@ static void place_of(const char *drum, double *x, double *y)
     const char *at = strstr(made.text, line);
     TEST_ASSERT_NOT_NULL_MESSAGE(at, drum);
     TEST_ASSERT_EQUAL(2, sscanf(at + strlen(line), "%lf %lf", x, y));
+}
+
+static void test_a_keyboard_has_an_octave_at_least(void)
+{
+    char low[8], high[8];
+    double from, to;
+    load(HEAD PART("Marimba") BAR(1, FOUR NOTE(C, 5, 16, "")) TAIL);
+    const char *line = strstr(made.text, "instrument marimba");
+    TEST_ASSERT_EQUAL(2, sscanf(line, "instrument marimba marimba %7s %7[^;]", low, high));
+    TEST_ASSERT_TRUE(himc_note_frequency(low, &from) && himc_note_frequency(high, &to));
+    TEST_ASSERT_TRUE(to / from > 1.999);
 }
 
 static void test_instruments_stand_apart_and_in_reach(void)
@@ -628,6 +643,7 @@ int main(void)
     RUN_TEST(test_names_that_sound_alike_are_told_apart);
     RUN_TEST(test_of_a_chord_two_hands_play_the_outer_notes);
     RUN_TEST(test_a_part_beyond_what_is_built_moves_as_a_whole);
+    RUN_TEST(test_a_keyboard_has_an_octave_at_least);
     RUN_TEST(test_each_drum_of_a_percussionist_is_struck);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
