@@ -438,6 +438,9 @@ static void test_dynamics_hold_until_the_next(void)
 {
     PLAY(BAR(1, FOUR C3(4, "") DYNAMICS("pp") C3(4, "") C3(4, "") DYNAMICS("ff") C3(4, "")));
     expect_dynamics(4, 4.0, 1.0, 1.0, 6.0);
+    PLAY(BAR(1, FOUR DIRECTION("<dynamics><other-dynamics>ffff</other-dynamics></dynamics>")
+                    C3(8, "") DYNAMICS("pppp") C3(8, "")));
+    expect_dynamics(2, 7.0, 0.0);
 }
 
 static void test_a_hairpin_leads_to_its_end(void)

@@ -159,6 +159,7 @@ static void test_names_of_drums_say_high_and_low(void)
         const char *name;
         int key;
     } rows[] = {{"Tom-tom 1", 50},
+                {"Tom I", 50},
                 {"Tom 2", 48},
                 {"Tom-Tom III", 45},
                 {"Hohes Tom", 50},
@@ -193,6 +194,10 @@ static void test_names_of_drums_say_high_and_low(void)
         TEST_ASSERT_EQUAL_MESSAGE(rows[i].key, key, rows[i].name);
     }
     int key;
+    for (int i = 0; i < 7; i++) // seven toms on the five that there are, the outer ones apart
+        TEST_ASSERT_TRUE(himc_music_of_sort(48, i, 7) >= himc_music_of_sort(48, i + 1, 8));
+    TEST_ASSERT_EQUAL(50, himc_music_of_sort(48, 0, 7));
+    TEST_ASSERT_EQUAL(41, himc_music_of_sort(48, 6, 7));
     TEST_ASSERT_EQUAL(MIDI_TUBULAR_BELL, himc_music_instrument("Chimes", &key));
     TEST_ASSERT_EQUAL(MIDI_DRUMS, himc_music_instrument("Wind Chimes", &key));
     TEST_ASSERT_EQUAL(MIDI_NO_SOUND, key);

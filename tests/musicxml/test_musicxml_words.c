@@ -204,6 +204,7 @@ static void test_a_metronome_mark_in_words_is_the_tempo(void)
         {"\xEE\xB2\xA5 = 66", 66},
         {"♩ = ♪", 60}, // of 120
         // these are none
+        {"♩ = wie vorher", 120},
         {"♪♪ = ♩♪", 120},
         {"♪ ♪ = ♩ ♪", 120},
         {"ca. 20 sec.", 120},
@@ -334,6 +335,18 @@ static void test_a_retuning_is_written_in_many_ways(void)
     expect_tuned("F - G", 1);
     expect_tuned("Fa in Sol", 1);
     expect_tuned("(F to G, C to C)", 1);
+    // in the octave that is written, and to a pitch that a drum has already
+    PLAY(BAR(1, FOUR NOTE(G, 2, 4, "") NOTE(G, 3, 4, "") WORDS("G3 muta in A3") REST(8))
+             BAR(2, NOTE(A, 3, 8, "") NOTE(G, 2, 8, "")));
+    expect_text("gliss A3");
+    PLAY(BAR(1, FOUR C3(4, "") NOTE(G, 2, 4, "") WORDS("muta in G") REST(8))
+             BAR(2, C3(8, "") NOTE(G, 2, 8, "")));
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "gliss"), made.text);
+    // German B is B flat
+    PLAY(BAR(1, FOUR "<note><pitch><step>B</step><alter>-1</alter><octave>2</octave></pitch>"
+                     "<duration>8</duration><voice>1</voice></note>" WORDS("B nach C umstimmen")
+                         REST(8)) BAR(2, C3(16, "")));
+    expect_text("gliss C3");
     // how drums are tuned at first is no change
     PLAY(BAR(1, FOUR WORDS("F - C") NOTE(F, 2, 8, "") C3(8, "")));
     TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "tun"), made.report);
