@@ -645,6 +645,18 @@ static void test_feet_play_their_pedals(void)
         double ahead = score->strokes[i < 2 ? i + 1 : 4].beat - score->changes[i].beat;
         TEST_ASSERT_TRUE(ahead > 0 && ahead < 0.07);
     }
+    tearDown();
+    // a foot closes open hats, and strikes them while a stick does
+    begin(&b);
+    event(&b, 0, 0x99, 46, 90);
+    event(&b, QUARTER, 0x99, 44, 90);
+    event(&b, QUARTER, 0x99, 42, 90);
+    event(&b, 0, 0x99, 44, 90);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(4, score->stroke_count);
+    TEST_ASSERT_EQUAL_INT(1, lines_with(made.text, "hats pedal 1;"));
+    TEST_ASSERT_TRUE(score->changes[1].beat < score->strokes[1].beat);
 }
 
 // each key of General MIDI's map is played, or told by its name
@@ -700,6 +712,13 @@ static void test_drums_are_played_on_a_set_up(void)
     reported("2 of 6 notes for drums are played");
     TEST_ASSERT_EQUAL_STRING("mine", score->strokes[0].drum);
     TEST_ASSERT_EQUAL_STRING("boom", score->strokes[1].drum);
+    file = fopen(path, "w"); // the name is more than the size
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("instrument other snare 14; instrument snare snare 12;", file);
+    fclose(file);
+    tearDown();
+    import(&b, &(midi_options){.setup = path});
+    TEST_ASSERT_EQUAL_STRING("snare", score->strokes[0].drum);
     remove(path);
     tearDown();
     begin(&b);

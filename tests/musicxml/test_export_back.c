@@ -104,8 +104,8 @@ static void test_each_kind_of_roll_comes_back(void)
     expect_same("rolls");
     // also where three strokes would be measured, and two that are no accent
     tearDown();
-    parse("drum low 32; tempo 40; roll 0 4 single f f; roll 6 0.2 single mf mf;"
-          "roll 6.2 3.8 single mp mp;");
+    parse("drum low 32; tempo 40; roll 0 4 single f f; roll 6 0.13333333 single mf mf;"
+          "roll 6.13333333 3.8 single mp mp;");
     read_back(himc_music_import);
     expect_same("slow rolls");
 }
@@ -204,6 +204,8 @@ static void test_midi_has_short_rolls_and_pickups(void)
     midi_file file;
     TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
     TEST_ASSERT_EQUAL(1 + 4 + 1, file.note_count);
+    for (int i = 0; i < file.note_count; i++)
+        TEST_ASSERT_TRUE(file.notes[i].off > file.notes[i].seconds + 0.02);
     TEST_ASSERT_EQUAL_DOUBLE(1, file.bars[1].beat);
     TEST_ASSERT_EQUAL_DOUBLE(5, file.bars[2].beat);
     himc_midi_file_free(&file);
@@ -268,9 +270,10 @@ static void test_a_gliss_ends_on_its_own_drum(void)
     for (int i = 0; i < count; i++)
         TEST_ASSERT_EQUAL_STRING(score->strokes[i].drum, back[i].drum);
     tearDown();
-    parse(
-        "drum low 32; low tune C2; stroke 0 right legato f; at 2 low gliss E2 2;"); // with the bar
+    parse("drum low 32; low tune C2; tempo 60; stroke 0 right legato f;"
+          "at 2 low gliss E2 2;"); // ends with the bar
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<dashes type=\"stop\""));
+    TEST_ASSERT_NULL(strstr(strstr(text.bytes, "</measure>"), "<dashes"));
 }
 
 static void test_a_choked_cymbal_is_choked_again(void)

@@ -174,7 +174,6 @@ static void continue_roll(shaper *s, music_note *roll, music_note *n)
     n->ratio = roll->ratio;
     n->length = n->rolled = end - at;
     n->ring = roll->ring;
-    n->staccato = n->pulled = n->ghost = false;
     roll->ring = 0;
     roll->rolled = at - roll->at.beat;
     if (roll->rolled > SAME)
