@@ -82,6 +82,21 @@ static void test_what_is_not_played_has_its_bar_and_reason(void)
     expect_text("both hands are busy (bar 3)");
 }
 
+// a hand that damps is off the head before the pedal moves
+static void test_a_pedal_moves_a_free_head(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(4, "") REST(1) WORDS("C muta in D") REST(3) NOTE(D, 3, 8, "")));
+    double damped = 0;
+    bool moved = false;
+    for (int i = 0; i < score->change_count; i++) {
+        const himc_command *c = &score->changes[i].command;
+        damped = c->id == HIMC_COMMAND_DAMP ? c->atom[0].number : damped;
+        moved |= c->id == HIMC_COMMAND_GLISS;
+        TEST_ASSERT_TRUE_MESSAGE(c->id != HIMC_COMMAND_GLISS || damped == 0, made.text);
+    }
+    TEST_ASSERT_TRUE(moved);
+}
+
 // --- order
 
 #define REPEAT(direction) "<barline><repeat direction='" direction "'/></barline>"
@@ -1012,6 +1027,7 @@ int main(void)
     RUN_TEST(test_words_and_noteheads_strike_hoop_and_shell);
     RUN_TEST(test_a_fermata_on_a_tied_end_is_held);
     RUN_TEST(test_a_dot_is_a_short_note_of_the_same_loudness);
+    RUN_TEST(test_a_pedal_moves_a_free_head);
     RUN_TEST(test_a_line_between_notes_or_words_is_a_gliss);
     RUN_TEST(test_mallets_and_cloths);
     RUN_TEST(test_words_about_tuning_move_a_pedal_there);

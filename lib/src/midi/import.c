@@ -478,10 +478,10 @@ static int by_time(const void *a, const void *b)
 }
 
 // a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head), and
-// is off before the head's next stroke; players also let it lie there while the pedal moves
+// is off before the head's next stroke and before its pedal moves
 static int list_damps(const midi_part *part, change *list)
 {
-    int count = 0;
+    int count = 0, pedal = 0;
     for (int i = 0; i < part->count; i++) {
         const midi_stroke *s = &part->stroke[i];
         if (!s->damped)
@@ -490,6 +490,11 @@ static int list_damps(const midi_part *part, change *list)
         for (int k = i + 1; k < part->count && part->stroke[k].note->seconds < until; k++)
             if (part->stroke[k].fate == MIDI_PLAYED && part->stroke[k].head == s->head)
                 until = part->stroke[k].note->seconds;
+        while (pedal < part->pedals && part->pedal[pedal].seconds < s->note->seconds)
+            pedal++;
+        for (int k = pedal; k < part->pedals && part->pedal[k].seconds < until; k++)
+            if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
+                until = part->pedal[k].seconds;
         // a dry note that the next one follows at once is damped before that
         double from = s->end, least = fmax(s->note->seconds + 0.15, himc_midi_stroke_end(s));
         if (s->note->way.ring < 0 && until - from < 0.1)
