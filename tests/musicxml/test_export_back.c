@@ -102,6 +102,12 @@ static void test_each_kind_of_roll_comes_back(void)
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL(score->strokes[i].ornament, back[i].ornament);
     expect_same("rolls");
+    // also where three strokes would be measured, and two that are no accent
+    tearDown();
+    parse("drum low 32; tempo 40; roll 0 4 single f f; roll 6 0.13333333 single mf mf;"
+          "roll 6.13333333 3.8 single mp mp;");
+    read_back(himc_music_import);
+    expect_same("slow rolls");
 }
 
 // the kinds of one player are staves of one part
@@ -142,6 +148,12 @@ static void test_ornaments_rolls_spots_and_dynamics_are_written(void)
     for (int i = 0; i < count; i++)
         if (back[i].beat < 3.5)
             TEST_ASSERT_EQUAL(score->strokes[i].spot, back[i].spot);
+    tearDown();
+    // a flam beside another drum's stroke
+    parse("setup kit; stroke 0 right legato f crash; flam 0 left legato f snare;");
+    read_back(himc_music_import);
+    expect_same("flam");
+    TEST_ASSERT_NULL(strstr(text.bytes, "<chord/>"));
 }
 
 static void test_midi_keeps_times_pitches_and_dynamics(void)
@@ -174,6 +186,28 @@ static void test_midi_has_each_grace_note(void)
     midi_file file;
     TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
     TEST_ASSERT_EQUAL(4 + 1 + 2 + 2, file.note_count);
+    TEST_ASSERT_TRUE(file.notes[0].velocity < file.notes[1].velocity);
+    for (int i = 0; i < file.note_count; i++)
+        TEST_ASSERT_TRUE(file.notes[i].off > file.notes[i].seconds + 0.02);
+    himc_midi_file_free(&file);
+}
+
+// a short roll is four strokes, a grace before time 0 none; a bar behind a pickup begins there
+static void test_midi_has_short_rolls_and_pickups(void)
+{
+    score = himc_score_parse("drum kettle; tempo 60; comment bars of 4/4 from beat 0;"
+                             "comment bars of 4/4 from beat 1; flam 0 right legato f;"
+                             "roll 1 0.2 single f f; stroke 5 right legato f;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, true, &error));
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_file file;
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
+    TEST_ASSERT_EQUAL(1 + 4 + 1, file.note_count);
+    for (int i = 0; i < file.note_count; i++)
+        TEST_ASSERT_TRUE(file.notes[i].off > file.notes[i].seconds + 0.02);
+    TEST_ASSERT_EQUAL_DOUBLE(1, file.bars[1].beat);
+    TEST_ASSERT_EQUAL_DOUBLE(5, file.bars[2].beat);
     himc_midi_file_free(&file);
 }
 
@@ -235,6 +269,11 @@ static void test_a_gliss_ends_on_its_own_drum(void)
     expect_same("gliss");
     for (int i = 0; i < count; i++)
         TEST_ASSERT_EQUAL_STRING(score->strokes[i].drum, back[i].drum);
+    tearDown();
+    parse("drum low 32; low tune C2; tempo 60; stroke 0 right legato f;"
+          "at 2 low gliss E2 2;"); // ends with the bar
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<dashes type=\"stop\""));
+    TEST_ASSERT_NULL(strstr(strstr(text.bytes, "</measure>"), "<dashes"));
 }
 
 static void test_a_choked_cymbal_is_choked_again(void)
@@ -274,16 +313,18 @@ static void test_a_gliss_keeps_its_octave_and_its_drum(void)
 
 static void test_what_notation_does_not_have_is_told_once_with_its_first_bar(void)
 {
-    parse("drum kettle; kettle tune 110.5; kettle place 0.5 0 0.8; kettle decay 3; tempo 60;"
-          "stroke 1 right legato f dead kettle; stroke 9 left legato f dead kettle;"
-          "stroke 10 right legato f 0.1 0.1 kettle; roll 12 2 press p kettle;"
-          "at 20 kettle decay 2; at 24 kettle decay 1; at 28 push trunk 10 0 0 0.1;"
-          "hit right legato f; stroke 30 left legato f kettle;");
+    parse(
+        "drum kettle; kettle tune 110.5; kettle place 0.5 0 0.8; kettle decay 3; tempo 60;"
+        "stroke 1 right legato f dead kettle; stroke 9 left legato f dead kettle;"
+        "stroke 10 right legato f 0.1 0.1 kettle; roll 12 2 press p kettle;"
+        "at 20 kettle decay 2; at 22 kettle muffle 0.5; at 24 kettle decay 1; at 28 push trunk 10 0 0 0.1;"
+        "hit right legato f; stroke 30 left legato f kettle;");
     TEST_ASSERT_EQUAL_STRING("1 place (bar 3) is written as the usual spot\n"
                              "2 dead strokes (bar 1) are written as usual\n"
                              "1 tuning (bar 1) is written to the semitone\n"
                              "1 change by push (bar 8) is not written\n"
                              "2 changes by decay (bar 6) are not written\n"
+                             "1 change by muffle (bar 6) is not written\n"
                              "before the piece, not written: hit 1, decay 1, place 1\n",
                              notes.said);
 }
@@ -300,6 +341,17 @@ static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(vo
                              "1 change by gliss (bar 3) is not written\n"
                              "1 change by muffle (bar 4) is not written\n",
                              notes.said);
+}
+
+// a cymbal's key in MIDI says nothing of its end
+static void test_midi_tells_of_a_choked_cymbal(void)
+{
+    score = himc_score_parse("setup kit; tempo 120; stroke 0 right legato f crash;"
+                             "at 1 crash damp 1; stroke 2 right legato f snare;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(notes.said, "1 change by damp (bar 1) is not written\n"),
+                                 notes.said);
 }
 
 // a stroke rings unless a hand damps it, also after a bar's end and where its note is short
@@ -384,6 +436,11 @@ static void test_a_hand_after_a_roll_damps_where_it_did(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "second damp 1;"), made.text);
     read_back(himc_music_import);
     expect_same("damped after a roll");
+    tearDown();
+    parse("drum low 32; tempo 60; roll 0 0.2 single f mf; roll 0.2 1.8 single mf mf;"
+          "at 2 low damp 1; at 2.2 low damp 0; stroke 6 left legato f;");
+    import_back(); // of a roll with an accent, too
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "low damp 1;"), made.text);
 }
 
 // elsewhere a velocity is all that is heard of an accent; here the same strokes come back
@@ -556,12 +613,14 @@ int main(void)
     RUN_TEST(test_ornaments_rolls_spots_and_dynamics_are_written);
     RUN_TEST(test_midi_keeps_times_pitches_and_dynamics);
     RUN_TEST(test_midi_has_each_grace_note);
+    RUN_TEST(test_midi_has_short_rolls_and_pickups);
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
     RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
     RUN_TEST(test_a_gliss_comes_back_as_a_gliss);
     RUN_TEST(test_a_gliss_keeps_its_octave_and_its_drum);
     RUN_TEST(test_what_notation_does_not_have_is_told_once_with_its_first_bar);
     RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
+    RUN_TEST(test_midi_tells_of_a_choked_cymbal);
     RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
     RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
     RUN_TEST(test_a_note_before_graces_rings_on_after_midi);

@@ -143,6 +143,31 @@ static void test_tuplets_have_brackets_and_ratios(void)
     TEST_ASSERT_EQUAL(1, count_of("bracket=\"yes\"")); // quarters have no beam
 }
 
+// six in a beat are twice three where a note is in its middle
+static void test_a_sextuplet_is_two_triplets(void)
+{
+    parse("drum k; stroke 0 right legato f; stroke 0.16666667 left legato f;"
+          "stroke 0.33333333 right legato f; stroke 0.5 left legato f;"
+          "stroke 0.66666667 right legato f; stroke 0.83333333 left legato f;"
+          "stroke 1 right legato f;");
+    TEST_ASSERT_EQUAL(6, count_of("<actual-notes>3<"));
+    TEST_ASSERT_EQUAL(2, count_of("<tuplet type=\"start\""));
+}
+
+// a whole bar's is one; in 3/4 each beat has its own
+static void test_rests_show_the_beats(void)
+{
+    parse("drum k; stroke 0 right legato f; stroke 8 left legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<rest measure=\"yes\"/>"));
+    TEST_ASSERT_EQUAL(5, count_of("<rest"));
+    tearDown();
+    parse("drum k; comment bars of 3/4 from beat 0; stroke 0 right legato f;");
+    TEST_ASSERT_EQUAL(2, count_of("<rest/>"));
+    tearDown();
+    parse("drum k; comment bars of 6/8 from beat 0; roll 0 3 single f f normal;");
+    TEST_ASSERT_EQUAL(1, count_of("<type>half</type><dot/>")); // of a note, one for the bar
+}
+
 static void test_dots_and_syncopations_are_one_note(void)
 {
     parse("drum k; stroke 0 right legato f; stroke 0.75 left legato f; stroke 1 right legato f;"
@@ -234,6 +259,9 @@ static void test_a_kit_has_one_mark_and_two_voices(void)
     TEST_ASSERT_EQUAL(4, count_of("<stem>up</stem>"));
     TEST_ASSERT_EQUAL(3, count_of("<notehead>x</notehead>"));
     TEST_ASSERT_EQUAL(2, count_of("<display-step>F</display-step><display-octave>4<"));
+    tearDown();
+    parse("setup kit; stroke 0 foot legato f kick; stroke 1 foot legato f kick;"); // feet alone
+    TEST_ASSERT_EQUAL(0, count_of("<voice>2</voice>"));
 }
 
 // one mark, an accent over what is louder, parentheses around what is much softer; none of it is
@@ -285,6 +313,16 @@ static void test_a_tempo_on_its_way_is_a_word(void)
     TEST_ASSERT_EQUAL(0, count_of("<words>rit.</words>"));
     TEST_ASSERT_TRUE(count_of("<metronome>") <= 3);
     TEST_ASSERT_TRUE(count_of("<sound tempo") > 6);
+    tearDown();
+    // in steps of two bars each is a number; of those before the first bar the last counts
+    parse("drum k; tempo 60; tempo 80 8; tempo 100 16; stroke 0 right legato f;"
+          "stroke 20 left legato f;");
+    TEST_ASSERT_EQUAL(3, count_of("<metronome>"));
+    tearDown();
+    parse(
+        "drum k; tempo 60; tempo 90 2; comment bars of 4/4 from beat 4; stroke 4 right legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<metronome>"));
+    TEST_ASSERT_EQUAL(1, count_of("<per-minute>90<"));
 }
 
 int main(void)
@@ -294,6 +332,8 @@ int main(void)
     RUN_TEST(test_bars_are_those_of_the_comments);
     RUN_TEST(test_a_short_bar_is_a_pickup);
     RUN_TEST(test_tuplets_have_brackets_and_ratios);
+    RUN_TEST(test_a_sextuplet_is_two_triplets);
+    RUN_TEST(test_rests_show_the_beats);
     RUN_TEST(test_dots_and_syncopations_are_one_note);
     RUN_TEST(test_a_roll_with_a_louder_beginning_has_an_accent);
     RUN_TEST(test_open_and_closed_hats_have_their_signs);

@@ -31,6 +31,10 @@ static void test_a_pickup_is_as_long_as_its_notes(void)
              4, "") "</measure>" BAR(1, C3(16, "")));
     expect_beats(2, 0.0, 1.0);
     expect_text("comment bar 0;");
+    PLAY(BAR(0, FOUR "<attributes><time><beats>4</beats><beat-type>4</beat-type></time>"
+                     "</attributes>" C3(4, "")) BAR(1, C3(16, "")));
+    expect_text("bars of 4/4 from beat 2");
+    expect_text("bars of 4/4 from beat 3");
 }
 
 static void test_an_empty_bar_is_as_long_as_its_time_signature(void)
@@ -44,6 +48,9 @@ static void test_a_transposing_part_sounds_as_it_is_transposed(void)
 {
     PLAY(BAR(1, FOUR "<attributes><transpose><chromatic>2</chromatic></transpose></attributes>" C3(
                     16, "")));
+    expect_text("tune D3;");
+    PLAY(BAR(1, FOUR "<attributes><transpose><chromatic>2</chromatic><octave-change>-1"
+                     "</octave-change></transpose></attributes>" NOTE(C, 4, 16, "")));
     expect_text("tune D3;");
 }
 
@@ -75,6 +82,21 @@ static void test_what_is_not_played_has_its_bar_and_reason(void)
     expect_text("both hands are busy (bar 3)");
 }
 
+// a hand that damps is off the head before the pedal moves
+static void test_a_pedal_moves_a_free_head(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(4, "") REST(1) WORDS("C muta in D") REST(3) NOTE(D, 3, 8, "")));
+    double damped = 0;
+    bool moved = false;
+    for (int i = 0; i < score->change_count; i++) {
+        const himc_command *c = &score->changes[i].command;
+        damped = c->id == HIMC_COMMAND_DAMP ? c->atom[0].number : damped;
+        moved |= c->id == HIMC_COMMAND_GLISS;
+        TEST_ASSERT_TRUE_MESSAGE(c->id != HIMC_COMMAND_GLISS || damped == 0, made.text);
+    }
+    TEST_ASSERT_TRUE(moved);
+}
+
 // --- order
 
 #define REPEAT(direction) "<barline><repeat direction='" direction "'/></barline>"
@@ -94,6 +116,16 @@ static void test_repeats_and_endings_are_played(void)
     const char *const first = stroke(2)->drum;
     TEST_ASSERT_TRUE(strcmp(first, stroke(4)->drum) != 0);
     TEST_ASSERT_EQUAL_STRING(stroke(3)->drum, stroke(1)->drum);
+}
+
+static void test_an_ending_may_be_of_two_times(void)
+{
+    PLAY(BAR(1, FOUR C3(16, ""))
+             BAR(2, ENDING("1, 2", "start")
+                        NOTE(G, 2, 16, "") "<barline><ending number='1, 2' "
+                                           "type='stop'/><repeat direction='backward'/></barline>")
+                 BAR(3, ENDING("3", "start") NOTE(D, 3, 16, "") ENDING("3", "stop")));
+    expect_beats(6, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0);
 }
 
 static void test_endings_without_a_number_or_a_stop_lose_no_bar(void)
@@ -143,6 +175,17 @@ static void test_da_capo_goes_to_fine_without_repeats(void)
     expect_beats(6, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0);
 }
 
+static void test_after_da_capo_the_last_ending_is_played(void)
+{
+    PLAY(BAR(1, FOUR C3(16, ""))
+             BAR(2, ENDING("1", "start")
+                        NOTE(G, 2, 16, "") "<barline><ending number='1' "
+                                           "type='stop'/><repeat direction='backward'/></barline>")
+                 BAR(3, ENDING("2", "start") C3(16, "") WORDS("D.C.") ENDING("2", "stop")));
+    expect_beats(6, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0); // 1 2 1 3 1 3
+    TEST_ASSERT_EQUAL_STRING(stroke(0)->drum, stroke(5)->drum);
+}
+
 static void test_dal_segno_goes_to_the_coda(void)
 {
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, "<sound segno='s'/>" NOTE(G, 2, 16, ""))
@@ -185,6 +228,12 @@ static void test_a_bar_with_a_repeat_sign_is_the_one_before(void)
     expect_beats(7, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0);
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL_STRING(stroke(i % 2)->drum, stroke(i)->drum);
+    // some programs write the notes, too
+    PLAY(BAR(1, FOUR C3(16, ""))
+             BAR(2, "<attributes><measure-style><measure-repeat type='start'>1</measure-repeat>"
+                    "</measure-style></attributes>" C3(16, "")));
+    expect_beats(2, 0.0, 4.0);
+    expect_text("2 of 2 notes for timpani are played");
 }
 
 static void test_both_notes_of_a_chord_are_damped_or_none(void)
@@ -248,6 +297,14 @@ static void test_two_voices_have_their_own_dynamics(void)
     }
 }
 
+static void test_voices_with_the_same_dynamics_share_the_next(void)
+{
+    PLAY(BAR(1, FOUR FOR_VOICE("p", "1") FOR_VOICE("p", "2")
+                    C3(8, "") "<backup><duration>8</duration></backup>" SECOND FOR_VOICE("f", "1")
+                        C3(8, "") "<backup><duration>8</duration></backup>" SECOND));
+    expect_dynamics(4, 2.0, 2.0, 5.0, 5.0);
+}
+
 // --- tempo
 
 static void test_tempo_marks_words_and_numbers(void)
@@ -260,6 +317,9 @@ static void test_tempo_marks_words_and_numbers(void)
     TEST_ASSERT_EQUAL_FLOAT(66, bpm_at(4));
     TEST_ASSERT_EQUAL_FLOAT(140, bpm_at(8));
     TEST_ASSERT_EQUAL_FLOAT(100, bpm_at(12));
+    // what comes after the last note is of others
+    PLAY(BAR(1, FOUR TEMPO(60) C3(16, "")) BAR(2, REST(16)) BAR(3, TEMPO(90) REST(16)));
+    TEST_ASSERT_EQUAL(1, score->tempo_count);
 }
 
 static void test_a_ritardando_slows_evenly_to_a_tempo(void)
@@ -271,6 +331,55 @@ static void test_a_ritardando_slows_evenly_to_a_tempo(void)
         TEST_ASSERT_TRUE(bpm_at(beat) < bpm_at(beat - 0.5));
     TEST_ASSERT_FLOAT_WITHIN(3, 90, bpm_at(7.9));
     TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(8));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 120 - bpm_at(4), bpm_at(7.9) - 90); // its steps are even
+}
+
+#define BARS_OF(a, b, c, d) \
+    BAR(a, C3(16, "")) BAR(b, C3(16, "")) BAR(c, C3(16, "")) BAR(d, C3(16, ""))
+
+static void test_a_ritardando_without_an_end_lasts_two_bars(void)
+{
+    static const char *const far[] = {"", "a tempo"}; // too far away to be its end
+    for (int i = 0; i < 2; i++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR TEMPO(120) WORDS("rit.") C3(16, ""))
+                     BARS_OF(2, 3, 4, 5) BAR(6, WORDS("%s") C3(16, "")) TAIL,
+                 far[i]);
+        load(text);
+        TEST_ASSERT_TRUE(bpm_at(0) > bpm_at(4) && bpm_at(4) > bpm_at(7.9));
+        TEST_ASSERT_EQUAL_FLOAT(bpm_at(7.9), bpm_at(19));
+    }
+    // three bars before its end
+    PLAY(BAR(1, FOUR TEMPO(120) WORDS("rit.") C3(16, "")) BAR(2, C3(16, "")) BAR(3, C3(16, ""))
+             BAR(4, WORDS("a tempo") C3(16, "")));
+    TEST_ASSERT_TRUE(bpm_at(8) > bpm_at(11.9));
+}
+
+// each part has the words of the tempo
+static void test_words_of_all_parts_count_once(void)
+{
+    static const char *const words[] = {"Più mosso", "rit."};
+    for (int i = 0; i < 2; i++) {
+        double seconds[2];
+        for (int parts = 1; parts <= 2; parts++) {
+            char text[4096], second[1024] = "";
+            if (parts == 2)
+                snprintf(second, sizeof second,
+                         "</part><part id='P2'>" BAR(1, FOUR REST(16)) BAR(2, WORDS("%s") REST(16)),
+                         words[i]);
+            snprintf(text, sizeof text,
+                     HEAD "<part-list><score-part id='P1'><part-name>Timpani</part-name>"
+                          "</score-part><score-part id='P2'><part-name>Violin</part-name>"
+                          "</score-part></part-list><part id='P1'>" BAR(1, FOUR C3(16, ""))
+                              BAR(2, WORDS("%s") C3(16, "")) BARS_OF(3, 4, 5, 6) "%s" TAIL,
+                     words[i], second);
+            load(text);
+            seconds[parts - 1] = time_between(4, 24);
+        }
+        TEST_ASSERT_EQUAL_FLOAT(seconds[0], seconds[1]);
+        TEST_ASSERT_TRUE(seconds[0] != 10);
+    }
 }
 
 static void test_a_tempo_is_that_before_two_ritardandi(void)
@@ -327,6 +436,15 @@ static void test_a_fermata_holds(void)
     PLAY(BAR(1, FOUR TEMPO(120) C3(4, "<notations><fermata/></notations>") C3(4, "") REST(8)));
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.0, time_between(0, 1));
     TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(1));
+    // two voices: once, and what comes after it has its own tempo
+    PLAY(BAR(
+        1, FOUR
+        "<attributes><time><beats>2</beats><beat-type>4</beat-type></time>"
+        "</attributes>" TEMPO(60)
+            C3(8, "<notations><fermata/></notations>") "<backup><duration>8</duration></backup>" NOTE(
+                G, 2, 4, "<notations><fermata/></notations>")) BAR(2, TEMPO(120) C3(8, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 4, time_between(0, 2));
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(2));
 }
 
 // --- dynamics
@@ -335,6 +453,9 @@ static void test_dynamics_hold_until_the_next(void)
 {
     PLAY(BAR(1, FOUR C3(4, "") DYNAMICS("pp") C3(4, "") C3(4, "") DYNAMICS("ff") C3(4, "")));
     expect_dynamics(4, 4.0, 1.0, 1.0, 6.0);
+    PLAY(BAR(1, FOUR DIRECTION("<dynamics><other-dynamics>ffff</other-dynamics></dynamics>")
+                    C3(8, "") DYNAMICS("pppp") C3(8, "")));
+    expect_dynamics(2, 7.0, 0.0);
 }
 
 static void test_a_hairpin_leads_to_its_end(void)
@@ -344,6 +465,10 @@ static void test_a_hairpin_leads_to_its_end(void)
     expect_dynamics(5, 2.0, 2.75, 3.5, 4.25, 5.0);
     PLAY(BAR(1, FOUR DYNAMICS("f") WEDGE("diminuendo") C3(8, "") WEDGE("stop") C3(8, "")));
     expect_dynamics(2, 5.0, 4.0);
+    // two steps where it is longer than a bar
+    PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo") C3(16, "")) BAR(2, C3(16, "") WEDGE("stop"))
+             BAR(3, C3(16, "")));
+    expect_dynamics(3, 2.0, 3.0, 4.0);
     // the f of an accent or an fp is an end, too
     static const char *const ends[] = {"fp", "sfz", "f"};
     for (int i = 0; i < 3; i++) {
@@ -354,6 +479,22 @@ static void test_a_hairpin_leads_to_its_end(void)
                  ends[i]);
         load(text);
         expect_roll(0, 0, 4, 2, 5);
+    }
+}
+
+// a dynamic that is written before the hairpin's end is subito
+static void test_a_hairpin_grows_up_to_a_sudden_p(void)
+{
+    static const char *const ends[] = {DYNAMICS("p") WEDGE("stop"), WEDGE("stop") DYNAMICS("p"),
+                                       DYNAMICS("p")};
+    for (int i = 0; i < 3; i++) {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR DYNAMICS("mf") WEDGE("crescendo") C3(8, "")
+                                                 C3(8, "")) BAR(2, "%s" C3(16, "")) TAIL,
+                 ends[i]);
+        load(text);
+        expect_dynamics(3, 4.0, 4.5, 2.0);
     }
 }
 
@@ -372,6 +513,9 @@ static void test_a_word_leads_to_the_next_dynamic(void)
     PLAY(BAR(1, FOUR DYNAMICS("p") WORDS("cresc.") C3(8, "") C3(8, ""))
              BAR(2, DYNAMICS("ff") C3(16, "")));
     expect_dynamics(3, 2.0, 4.0, 6.0);
+    PLAY(BAR(1, FOUR DYNAMICS("p") WORDS("cresc.") C3(16, "")) BAR(2, C3(16, "")) BAR(3, C3(16, ""))
+             BAR(4, C3(16, "")) BAR(5, DYNAMICS("ff") C3(16, "")));
+    expect_dynamics(5, 2.0, 3.0, 4.0, 5.0, 6.0);
 }
 
 static void test_marks_of_a_note_are_its_nuance(void)
@@ -394,6 +538,8 @@ static void test_fp_is_loud_once(void)
 {
     PLAY(BAR(1, FOUR DYNAMICS("fp") C3(8, "") C3(8, "")));
     expect_dynamics(2, 5.0, 2.0);
+    PLAY(BAR(1, FOUR DYNAMICS("fp") C3(1, "") C3(1, "") C3(2, "") REST(12)));
+    expect_dynamics(3, 5.0, 2.0, 2.0);
 }
 
 // --- words
@@ -416,8 +562,19 @@ static void test_damped_notes_and_notes_that_ring(void)
     PLAY(BAR(1, FOUR C3(2, "<notations><tied type='let-ring'/></notations>") REST(14))
              BAR(2, C3(16, "")));
     TEST_ASSERT_EQUAL(0, damps());
+    PLAY(BAR(1, FOUR C3(2, "<tie type='start'/>") REST(14)) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(0, damps()); // a tie into the air
+    PLAY(BAR(1, FOUR WORDS("l.v.") C3(2, ARTICULATION("staccato")) REST(14)) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(0, damps());
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, WORDS("secco") C3(8, "") C3(8, "")));
     TEST_ASSERT_EQUAL(1, damps());
+    PLAY(BAR(1, FOUR C3(4, "") C3(4, "") DIRECTION("<damp-all/>") REST(8)));
+    TEST_ASSERT_EQUAL(1, damps()); // the last stroke
+    PLAY(BAR(1, FOUR TEMPO(240) C3(1, "") REST(15)) BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 4 * 0.15 + lead(), score->changes[0].beat); // as fast as a hand
+    PLAY(BAR(1, FOUR TEMPO(180) WORDS("sempre secco") C3(2, "") C3(2, "") C3(2, "") C3(2, "")
+                    REST(8)));
+    TEST_ASSERT_EQUAL(1, damps()); // no time between eighths
     PLAY(BAR(1, FOUR C3(12, "") DIRECTION("<damp-all/>") REST(4)) BAR(2, REST(16)));
     TEST_ASSERT_EQUAL(1, damps());
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 3 + lead(), score->changes[0].beat);
@@ -443,6 +600,10 @@ static void test_sticking_is_kept(void)
     TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(0)->hand);
     TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(1)->hand);
     TEST_ASSERT_EQUAL(HIMC_RIGHT, stroke(2)->hand);
+    PLAY(BAR(1, FOUR C3(4, "") WORDS("L") REST(4) C3(4, "") WORDS("L") REST(4))
+             BAR(2, C3(16, ""))); // over a rest
+    TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(1)->hand);
+    TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(2)->hand);
 }
 
 static void test_spots_hold_until_the_next(void)
@@ -751,6 +912,10 @@ static void test_endless_jumps_end(void)
         2, C3(16, "") "<barline><repeat direction='backward' times='999999999'/></barline>")
              BAR(3, C3(16, "") WORDS("D.C.") WORDS("D.S.")));
     TEST_ASSERT_EQUAL(31 + 2 + 1 + 3, score->stroke_count);
+    // behind the coda no one leaves for it
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(2, C3(16, "") WORDS("D.C."))
+             BAR(3, "<sound coda='c'/>" C3(16, "")) BAR(4, C3(16, "") "<sound tocoda='c'/>"));
+    TEST_ASSERT_EQUAL(2 + 4, score->stroke_count);
 }
 
 static const char whole[] = HEAD PART("Timpani")
@@ -825,20 +990,25 @@ int main(void)
     RUN_TEST(test_cue_notes_are_left_out_and_counted_with_their_bars);
     RUN_TEST(test_what_is_not_played_has_its_bar_and_reason);
     RUN_TEST(test_repeats_and_endings_are_played);
+    RUN_TEST(test_an_ending_may_be_of_two_times);
     RUN_TEST(test_endings_without_a_number_or_a_stop_lose_no_bar);
     RUN_TEST(test_numbers_beyond_music_are_read_and_lose_nothing);
     RUN_TEST(test_graces_at_the_end_are_counted);
     RUN_TEST(test_an_accent_over_a_rest_is_not_the_next_note_s);
     RUN_TEST(test_a_repeat_is_played_as_often_as_it_says);
     RUN_TEST(test_da_capo_goes_to_fine_without_repeats);
+    RUN_TEST(test_after_da_capo_the_last_ending_is_played);
     RUN_TEST(test_dal_segno_goes_to_the_coda);
     RUN_TEST(test_the_first_coda_is_left_for_the_last);
     RUN_TEST(test_a_bar_with_a_repeat_sign_is_the_one_before);
     RUN_TEST(test_both_notes_of_a_chord_are_damped_or_none);
     RUN_TEST(test_two_notes_in_turn_are_as_fast_with_their_time_modification);
     RUN_TEST(test_two_voices_have_their_own_dynamics);
+    RUN_TEST(test_voices_with_the_same_dynamics_share_the_next);
     RUN_TEST(test_tempo_marks_words_and_numbers);
     RUN_TEST(test_a_ritardando_slows_evenly_to_a_tempo);
+    RUN_TEST(test_a_ritardando_without_an_end_lasts_two_bars);
+    RUN_TEST(test_words_of_all_parts_count_once);
     RUN_TEST(test_a_tempo_is_that_before_two_ritardandi);
     RUN_TEST(test_an_accelerando_arrives_at_the_mark_that_it_leads_to);
     RUN_TEST(test_the_tempo_of_a_repeated_bar_returns);
@@ -846,6 +1016,7 @@ int main(void)
     RUN_TEST(test_a_fermata_holds);
     RUN_TEST(test_dynamics_hold_until_the_next);
     RUN_TEST(test_a_hairpin_leads_to_its_end);
+    RUN_TEST(test_a_hairpin_grows_up_to_a_sudden_p);
     RUN_TEST(test_words_beside_a_dynamic_do_not_hide_it);
     RUN_TEST(test_a_word_leads_to_the_next_dynamic);
     RUN_TEST(test_marks_of_a_note_are_its_nuance);
@@ -856,6 +1027,7 @@ int main(void)
     RUN_TEST(test_words_and_noteheads_strike_hoop_and_shell);
     RUN_TEST(test_a_fermata_on_a_tied_end_is_held);
     RUN_TEST(test_a_dot_is_a_short_note_of_the_same_loudness);
+    RUN_TEST(test_a_pedal_moves_a_free_head);
     RUN_TEST(test_a_line_between_notes_or_words_is_a_gliss);
     RUN_TEST(test_mallets_and_cloths);
     RUN_TEST(test_words_about_tuning_move_a_pedal_there);

@@ -128,6 +128,15 @@ static void test_rolls_are_of_the_kind_of_their_drum(void)
     expect_roll(0, 0, 4, 4, 4);
 }
 
+static void test_feet_leave_a_roll_to_the_hands(void)
+{
+    KIT(BAR(1, FOUR SNARE(16, MARKS(3)) "<backup><duration>16</duration></backup>" DRUM(F, 4, 4, "")
+                   DRUM(F, 4, 4, "") DRUM(F, 4, 8, "")));
+    TEST_ASSERT_EQUAL_MESSAGE(4, score->stroke_count, made.text);
+    for (int i = 0; i < 4; i++)
+        TEST_ASSERT_EQUAL(strcmp(stroke(i)->drum, "snare") == 0 ? 4 : 0, stroke(i)->length);
+}
+
 static void test_accents_are_played_or_counted(void)
 {
     // within a roll it begins anew
@@ -235,6 +244,7 @@ int main(void)
     RUN_TEST(test_words_about_snares_move_the_wires);
     RUN_TEST(test_a_choked_cymbal_is_damped_at_its_end);
     RUN_TEST(test_rolls_are_of_the_kind_of_their_drum);
+    RUN_TEST(test_feet_leave_a_roll_to_the_hands);
     RUN_TEST(test_accents_are_played_or_counted);
     RUN_TEST(test_signs_without_a_way_to_play_them_are_counted);
     RUN_TEST(test_a_bass_drum_without_a_kit_is_struck_by_hands);

@@ -126,6 +126,30 @@ static void test_staves_have_their_own_words(void)
     TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(1)->spot);
     expect_text("snare wires 0;");
     TEST_ASSERT_NULL(strstr(made.text, "third wires"));
+    load(PLAYED_BY(TIMPANI_AND_SNARE) BAR(1, FOUR SAYS(1, "<words>coperto</words>") ON(1, "T", 16)
+                                                 BACK ON(2, "S", 16)) TAIL);
+    expect_text("third muffle 1;");
+    TEST_ASSERT_NULL(strstr(made.text, "snare muffle"));
+    // what only one of them has is not the other's, whichever note comes first
+    load(PLAYED_BY(TIMPANI_AND_SNARE)
+             BAR(1, FOUR SAYS(1, "<dynamics><ff/></dynamics>") ON(1, "T", 16)
+                        BACK SAYS(2, "<words>near rim</words>") ON(2, "S", 16)) TAIL);
+    for (int i = 0; i < 2; i++) {
+        bool snare = strcmp(stroke(i)->drum, "snare") == 0;
+        TEST_ASSERT_EQUAL(snare ? HIMC_SPOT_RIM : HIMC_SPOT_NORMAL, stroke(i)->spot);
+        TEST_ASSERT_FLOAT_WITHIN(0.01, snare ? 4 : 6, 7 * stroke(i)->dynamic);
+    }
+    // a roll is not cut where the other's dynamic changes
+    load(PLAYED_BY(TIMPANI_AND_SNARE) BAR(
+        1, FOUR
+        "<note><pitch><step>D</step><octave>3</octave></pitch><duration>16"
+        "</duration><instrument id='T'/><voice>1</voice><staff>1</staff>" MARKS(
+            3) "</note>" BACK ON(2, "S", 8)
+            SAYS(
+                2,
+                "<dynamics><ff/></dynamics>") "<note><rest/><duration>8</duration><voice>2</voice><staff>2</staff>"
+                                              "</note>") BAR(2, ON(2, "S", 16)) TAIL);
+    TEST_ASSERT_EQUAL_MESSAGE(4, score->stroke_count, made.text); // both hands, one roll, the snare
 }
 
 // drums of one sort are told apart by their names, and by their places on the staff
@@ -135,6 +159,7 @@ static void test_names_of_drums_say_high_and_low(void)
         const char *name;
         int key;
     } rows[] = {{"Tom-tom 1", 50},
+                {"Tom I", 50},
                 {"Tom 2", 48},
                 {"Tom-Tom III", 45},
                 {"Hohes Tom", 50},
@@ -169,6 +194,10 @@ static void test_names_of_drums_say_high_and_low(void)
         TEST_ASSERT_EQUAL_MESSAGE(rows[i].key, key, rows[i].name);
     }
     int key;
+    for (int i = 0; i < 7; i++) // seven toms on the five that there are, the outer ones apart
+        TEST_ASSERT_TRUE(himc_music_of_sort(48, i, 7) >= himc_music_of_sort(48, i + 1, 8));
+    TEST_ASSERT_EQUAL(50, himc_music_of_sort(48, 0, 7));
+    TEST_ASSERT_EQUAL(41, himc_music_of_sort(48, 6, 7));
     TEST_ASSERT_EQUAL(MIDI_TUBULAR_BELL, himc_music_instrument("Chimes", &key));
     TEST_ASSERT_EQUAL(MIDI_DRUMS, himc_music_instrument("Wind Chimes", &key));
     TEST_ASSERT_EQUAL(MIDI_NO_SOUND, key);
@@ -334,6 +363,17 @@ static void place_of(const char *drum, double *x, double *y)
     const char *at = strstr(made.text, line);
     TEST_ASSERT_NOT_NULL_MESSAGE(at, drum);
     TEST_ASSERT_EQUAL(2, sscanf(at + strlen(line), "%lf %lf", x, y));
+}
+
+static void test_a_keyboard_has_an_octave_at_least(void)
+{
+    char low[8], high[8];
+    double from, to;
+    load(HEAD PART("Marimba") BAR(1, FOUR NOTE(C, 5, 16, "")) TAIL);
+    const char *line = strstr(made.text, "instrument marimba");
+    TEST_ASSERT_EQUAL(2, sscanf(line, "instrument marimba marimba %7s %7[^;]", low, high));
+    TEST_ASSERT_TRUE(himc_note_frequency(low, &from) && himc_note_frequency(high, &to));
+    TEST_ASSERT_TRUE(to / from > 1.999);
 }
 
 static void test_instruments_stand_apart_and_in_reach(void)
@@ -522,6 +562,14 @@ static void test_a_name_of_two_drums_is_both(void)
         }
 }
 
+// of three drums in a name two are written, each in its usual place
+static void test_a_drum_of_a_name_may_have_no_notes(void)
+{
+    load(HEAD PART("Cymbals, Snare Drum, Bass Drum")
+             BAR(1, FOUR WRITTEN("C", 5) WRITTEN("F", 4) WRITTEN("C", 5) WRITTEN("F", 4)) TAIL);
+    expect_drums(4, (const char *const[]){"snare", "bass-drum", "snare", "bass-drum"});
+}
+
 // the staff of words is 1 where there is one only, though notes do not say it
 static void test_words_of_staff_one_are_of_notes_without_a_staff(void)
 {
@@ -600,6 +648,7 @@ int main(void)
     RUN_TEST(test_names_that_sound_alike_are_told_apart);
     RUN_TEST(test_of_a_chord_two_hands_play_the_outer_notes);
     RUN_TEST(test_a_part_beyond_what_is_built_moves_as_a_whole);
+    RUN_TEST(test_a_keyboard_has_an_octave_at_least);
     RUN_TEST(test_each_drum_of_a_percussionist_is_struck);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
@@ -608,6 +657,7 @@ int main(void)
     RUN_TEST(test_drums_of_one_kind_stay_apart);
     RUN_TEST(test_names_of_instruments_decide_before_their_sounds);
     RUN_TEST(test_a_name_of_two_drums_is_both);
+    RUN_TEST(test_a_drum_of_a_name_may_have_no_notes);
     RUN_TEST(test_words_of_staff_one_are_of_notes_without_a_staff);
     RUN_TEST(test_toms_of_a_kit_are_apart_where_they_are_written);
     RUN_TEST(test_a_pedal_waits_for_the_end_of_a_long_note);

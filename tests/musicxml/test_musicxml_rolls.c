@@ -10,6 +10,14 @@ static void test_two_strokes_through_the_stem_are_measured(void)
     PLAY(BAR(1, FOUR TEMPO(60) C3(2, "<type>eighth</type>" MARKS(1)) REST(14)));
     expect_beats(2, 0.0, 0.25);
     expect_text("1 of 1 notes for timpani");
+    // an accent and a hand are of the first
+    PLAY(BAR(1, FOUR TEMPO(60) DIRECTION("<words>L</words>")
+                    C3(4, "<notations><ornaments><tremolo type='single'>2</tremolo></ornaments>"
+                          "<articulations><accent/></articulations></notations>") REST(12)));
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL(i ? HIMC_LEGATO : HIMC_ACCENT, stroke(i)->nuance);
+        TEST_ASSERT_EQUAL(i % 2 ? HIMC_RIGHT : HIMC_LEFT, stroke(i)->hand);
+    }
 }
 
 // musescore#20883: three are a roll, but measured where they are slow, or where it says so
@@ -24,6 +32,9 @@ static void test_three_strokes_are_a_roll_unless_measured(void)
     TEST_ASSERT_EQUAL(8, score->stroke_count);
     PLAY(BAR(1, FOUR TEMPO(66) WORDS("gemessen") C3(4, MARKS(3)) REST(12)));
     TEST_ASSERT_EQUAL(8, score->stroke_count);
+    // faster than two hands
+    PLAY(BAR(1, FOUR TEMPO(100) WORDS("gemessen") C3(16, MARKS(3))));
+    expect_roll(0, 0, 4, 4, 4);
     PLAY(BAR(1, FOUR TEMPO(40) C3(16, "<notations><ornaments><tremolo type='unmeasured'/>"
                                       "</ornaments></notations>")));
     expect_roll(0, 0, 4, 4, 4);
@@ -36,6 +47,15 @@ static void test_three_strokes_under_a_fermata_are_a_roll(void)
                           "<fermata/></notations>")));
     TEST_ASSERT_EQUAL(1, score->stroke_count);
     expect_roll(0, 2, 2, 4, 4);
+    // of another voice
+    PLAY(BAR(
+        1,
+        FOUR TEMPO(40) NOTE(
+            G, 2, 16,
+            "<notations><fermata/></notations>") "<backup><duration>16</duration></backup>" C3(4,
+                                                                                               "")
+            C3(12, MARKS(3))));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
 }
 
 // musescore#16756: a timpani trill is a roll
@@ -123,6 +143,9 @@ static void test_a_roll_tied_to_a_plain_note_ends_with_a_stroke(void)
     TEST_ASSERT_EQUAL(2, score->stroke_count);
     TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(0)->ornament);
     expect_roll(1, 4, 4, 4, 4);
+    // a line that nothing ends is of the notes tied to its first
+    PLAY(BAR(1, FOUR C3(4, WAVY("start")) C3(4, "") C3(4, TIE("start")) C3(4, TIE("stop"))));
+    expect_beats(3, 0.0, 1.0, 2.0);
 }
 
 #define CHORD(step, octave, duration, more)                                           \
@@ -177,6 +200,12 @@ static void test_marks_of_a_chord_are_of_all_its_notes(void)
     PLAY(
         BAR(1, FOUR C3(8, ARTICULATION("accent")) CHORD(G, 2, 8, "") C3(8, "") CHORD(G, 2, 8, "")));
     expect_dynamics(4, 5.0, 5.0, 4.0, 4.0);
+    // a fermata: both are rolled to its end
+    PLAY(BAR(1, FOUR C3(8, "<tie type='start'/>" MARKS(3)) CHORD(G, 2, 8, "<tie type='start'/>")
+                    C3(8, "<tie type='stop'/><notations><fermata/></notations>")
+                        CHORD(G, 2, 8, "<tie type='stop'/>")));
+    TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+    expect_roll_of_two(0, 0, 4);
 }
 
 static void test_an_accent_on_a_roll_is_its_beginning(void)
@@ -199,6 +228,8 @@ static void test_two_notes_are_played_in_turn(void)
         TEST_ASSERT_EQUAL_STRING(stroke(i - 2)->drum, stroke(i)->drum);
     TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
     expect_text("2 of 2 notes");
+    PLAY(BAR(1, FOUR TEMPO(60) C3(4, "<type>half</type>" PAIR("start")) REST(12)));
+    expect_beats(1, 0.0); // its second is missing
 }
 
 #define BACK "<backup><duration>16</duration></backup>"
@@ -221,6 +252,9 @@ static void test_graces_are_flam_drag_and_ruff(void)
         TEST_ASSERT_TRUE(stroke(i)->hand != stroke(i + 1)->hand);
         TEST_ASSERT_TRUE(stroke(i)->dynamic < stroke(3)->dynamic - 0.1);
     }
+    // also before the first note of a piece
+    PLAY(BAR(1, FOUR TEMPO(120) GRACE(C) GRACE(C) GRACE(C) C3(16, "")));
+    expect_beats(4, -0.42, -0.28, -0.14, 0.0);
 }
 
 // a hairpin that ends a 16th before the bar, fp on a short roll, a grace on the roll's drum: the
@@ -250,6 +284,15 @@ static void test_a_note_on_another_drum_after_a_roll_is_never_lost(void)
     }
 }
 
+// its softer end is short, but the hand may leave already from its louder beginning
+static void test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) NOTE(F, 2, 4, "") C3(4, "") NOTE(G, 3, 4, "") NOTE(B, 3, 4, ""))
+             BAR(2, DYNAMICS("sfz") NOTE(F, 2, 2, MARKS(3)) NOTE(B, 3, 2, "") REST(12)));
+    expect_text("6 of 6 notes for timpani are played");
+    TEST_ASSERT_EQUAL_STRING(stroke(3)->drum, stroke(6)->drum);
+}
+
 // faster than the hands could alternate on two drums stroke by stroke: each rolls on its own
 static void test_a_fast_tremolo_of_two_notes_is_a_roll_on_both(void)
 {
@@ -274,16 +317,22 @@ static void test_a_trill_on_bars_is_of_two_notes(void)
 {
 #define TRILL(more) "<notations><ornaments><trill-mark/>" more "</ornaments></notations>"
 #define KEY(fifths) "<attributes><key><fifths>" #fifths "</fifths></key></attributes>"
-    static const char *const upper[] = {"F", "F#", "F", "F#"};
+#define F_SHARP                                                                         \
+    "<note><pitch><step>F</step><alter>1</alter><octave>4</octave></pitch><duration>16" \
+    "</duration><voice>1</voice>" TRILL("") "</note>"
+    static const char *const lower = "EEEEDDFE", *const upper[] = {"F", "F#", "F", "F#",
+                                                                   "E", "D#", "G", "F#"};
     load(HEAD PART("Xylophone") BAR(1, FOUR NOTE(E, 4, 16, TRILL("")))
              BAR(2, KEY(2) NOTE(E, 4, 16, TRILL("")))
                  BAR(3, NOTE(E, 4, 16, TRILL("<accidental-mark>natural</accidental-mark>"))) BAR(
                      4, KEY(0) NOTE(E, 4, 16, TRILL("<accidental-mark>sharp</accidental-mark>")))
-                     TAIL);
-    expect_text("4 of 4 notes for xylophone are played");
-    TEST_ASSERT_EQUAL_MESSAGE(8, score->stroke_count, made.text);
-    for (int i = 0; i < 4; i++) { // in the octave that the instrument has
-        TEST_ASSERT_EQUAL('E', stroke(2 * i)->part[0]);
+                     BAR(5, KEY(-1) NOTE(D, 4, 16, TRILL("")))
+                         BAR(6, KEY(-2) NOTE(D, 4, 16, TRILL(""))) BAR(7, KEY(1) F_SHARP)
+                             BAR(8, FOUR NOTE(E, 4, 16, TRILL(""))) TAIL);
+    expect_text("8 of 8 notes for xylophone are played");
+    TEST_ASSERT_EQUAL_MESSAGE(16, score->stroke_count, made.text);
+    for (int i = 0; i < 8; i++) { // in the octave that the instrument has
+        TEST_ASSERT_EQUAL(lower[i], stroke(2 * i)->part[0]);
         TEST_ASSERT_EQUAL(strlen(upper[i]) + 1, strlen(stroke(2 * i + 1)->part));
         TEST_ASSERT_EQUAL_STRING_LEN(upper[i], stroke(2 * i + 1)->part, strlen(upper[i]));
     }
@@ -360,6 +409,9 @@ static void test_a_stroke_on_another_drum_takes_a_hand_from_a_roll(void)
     TEST_ASSERT_TRUE(back > 0.1 && back < 0.5);
     expect_roll(2, 1 + back, 2 - back, 2, 2);
     expect_roll(4, 3 + back, 1 - back, 2, 2);
+    // less than half would be left
+    PLAY(BAR(1, FOUR TEMPO(80) C3(8, MARKS(3)) REST(8) BACK LOW(2) LOW(2) LOW(2) LOW(2)));
+    expect_roll(1, 0, 2, 4, 4);
     PLAY(BAR(1, FOUR TEMPO(120) C3(4, MARKS(3)) REST(12) BACK LOW(2) LOW(2)));
     expect_text("1 note is not played: both hands are busy (bar 1)");
 }
@@ -376,6 +428,14 @@ static void test_a_louder_voice_strikes_in_a_soft_roll(void)
     TEST_ASSERT_FLOAT_WITHIN(0.06, 5, 7 * stroke(1)->dynamic);
     TEST_ASSERT_FLOAT_WITHIN(0.06, 2, 7 * stroke(2)->last_dynamic);
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, stroke(1)->length + stroke(2)->length);
+    // a softer one does not soften it, nor ends its dot the roll
+    PLAY(BAR(1, FOUR TEMPO(120) OF(1, "ff") C3(16, "<notations><tied type='let-ring'/><ornaments>"
+                                                   "<tremolo type='single'>4</tremolo></ornaments>"
+                                                   "</notations>") BACK OF(2, "p") REST2(8)
+                    SECOND(8, ARTICULATION("staccato"))) BAR(2, REST(16)) BAR(3, C3(16, "")));
+    expect_roll(0, 0, 2, 6, 6);
+    expect_roll(1, 2, 2, 6, 6);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "damp 1"), made.text);
 }
 
 // a later sign for all leaves the drums alone that are damped already
@@ -438,6 +498,7 @@ int main(void)
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     RUN_TEST(test_a_roll_on_two_bars_has_both);
     RUN_TEST(test_a_note_on_another_drum_after_a_roll_is_never_lost);
+    RUN_TEST(test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum);
     RUN_TEST(test_a_fast_tremolo_of_two_notes_is_a_roll_on_both);
     RUN_TEST(test_a_trill_on_bars_is_of_two_notes);
     RUN_TEST(test_a_roll_that_begins_with_another_drum_is_struck_on_the_beat);

@@ -16,6 +16,10 @@ static void test_piu_and_meno_are_a_step_from_what_was_before(void)
                                              "</dynamics>") C3(4, "") WORDS("meno p")
                             WORDS("meno p") C3(4, "")));
     expect_dynamics(4, 2.0, 3.0, 4.0, 5.0);
+    // behind a hairpin, louder than its end
+    PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo") C3(8, "") C3(8, ""))
+             BAR(2, WORDS("più f") WEDGE("stop") C3(16, "")));
+    expect_dynamics(3, 2.0, 2.5, 4.0);
     PLAY(BAR(1, FOUR WORDS("poco f") C3(8, "") WORDS("p") C3(8, "")));
     TEST_ASSERT_TRUE(stroke(0)->dynamic < 5 / 7.0 && stroke(0)->dynamic > 4 / 7.0);
 }
@@ -129,6 +133,18 @@ static void test_eighths_swing_and_what_is_finer_does_not(void)
     expect_beats(7, 0.0, 0.5, 0.75, 1.0, 5 / 3.0, 2.0, 8 / 3.0);
 }
 
+// the first eighth of each bar is long; that of a pickup is its last, a short one
+static void test_eighths_swing_in_bars_and_pickups_of_any_length(void)
+{
+#define METER(beats, type)                                                                 \
+    "<attributes><divisions>4</divisions><time><beats>" #beats "</beats><beat-type>" #type \
+    "</beat-type></time></attributes>"
+    PLAY(BAR(1, METER(5, 8) WORDS("Swing") EIGHTHS C3(2, "")) BAR(2, METER(2, 4) EIGHTHS));
+    expect_beats(9, 0.0, 2 / 3.0, 1.0, 5 / 3.0, 2.0, 2.5, 2.5 + 2 / 3.0, 3.5, 3.5 + 2 / 3.0);
+    PLAY(BAR(0, METER(2, 4) WORDS("Swing") C3(2, "")) BAR(1, EIGHTHS));
+    expect_beats(5, 1 / 6.0, 0.5, 0.5 + 2 / 3.0, 1.5, 1.5 + 2 / 3.0);
+}
+
 static void test_what_belongs_to_a_note_swings_with_it(void)
 {
     PLAY(BAR(1, FOUR WORDS("Swing") C3(2, "") WORDS("R") GRACE(C) C3(2, "") C3(2, MARKS(4))
@@ -136,7 +152,9 @@ static void test_what_belongs_to_a_note_swings_with_it(void)
     TEST_ASSERT_EQUAL_MESSAGE(4, score->stroke_count, made.text);
     TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(1)->ornament);
     TEST_ASSERT_EQUAL(HIMC_RIGHT, stroke(1)->hand);
-    expect_roll(2, 1, 2 / 3.0, 4, 4); // up to the next note
+    expect_roll(2, 1, 2 / 3.0, 4, 4);                           // up to the next note
+    PLAY(BAR(1, FOUR WORDS("Swing") C3(2, MARKS(4)) REST(14))); // or where one would be
+    expect_roll(0, 0, 2 / 3.0, 4, 4);
 }
 
 // a line and words that say the same are one gliss, of the line's length
@@ -186,6 +204,7 @@ static void test_a_metronome_mark_in_words_is_the_tempo(void)
         {"\xEE\xB2\xA5 = 66", 66},
         {"♩ = ♪", 60}, // of 120
         // these are none
+        {"♩ = wie vorher", 120},
         {"♪♪ = ♩♪", 120},
         {"♪ ♪ = ♩ ♪", 120},
         {"ca. 20 sec.", 120},
@@ -316,6 +335,18 @@ static void test_a_retuning_is_written_in_many_ways(void)
     expect_tuned("F - G", 1);
     expect_tuned("Fa in Sol", 1);
     expect_tuned("(F to G, C to C)", 1);
+    // in the octave that is written, and to a pitch that a drum has already
+    PLAY(BAR(1, FOUR NOTE(G, 2, 4, "") NOTE(G, 3, 4, "") WORDS("G3 muta in A3") REST(8))
+             BAR(2, NOTE(A, 3, 8, "") NOTE(G, 2, 8, "")));
+    expect_text("gliss A3");
+    PLAY(BAR(1, FOUR C3(4, "") NOTE(G, 2, 4, "") WORDS("muta in G") NOTE(G, 2, 8, "")));
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "gliss"), made.text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not followed"), made.report);
+    // German B is B flat
+    PLAY(BAR(1, FOUR "<note><pitch><step>B</step><alter>-1</alter><octave>2</octave></pitch>"
+                     "<duration>8</duration><voice>1</voice></note>" WORDS("B nach C umstimmen")
+                         REST(8)) BAR(2, C3(16, "")));
+    expect_text("gliss C3");
     // how drums are tuned at first is no change
     PLAY(BAR(1, FOUR WORDS("F - C") NOTE(F, 2, 8, "") C3(8, "")));
     TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "tun"), made.report);
@@ -341,6 +372,15 @@ static void test_a_row_of_hands_is_of_the_notes_in_turn(void)
     expect_hands("L R L L", "LRLL");
     expect_hands("r-l-r-r", "RLRR");
     expect_hands("R L L rL", "RLLL"); // the small one is the grace note's
+    // a tied note has none, nor has another voice
+    PLAY(BAR(1, FOUR WORDS("R R L L") C3(4, "<tie type='start'/>") C3(4, "<tie type='stop'/>")
+                    C3(8, "") "<backup><duration>4</duration></backup><note><pitch><step>G</step>"
+                              "<octave>2</octave></pitch><duration>4</duration><voice>2</voice>"
+                              "</note>") BAR(2, C3(8, "") C3(8, "")));
+    static const himc_hand hands[] = {HIMC_RIGHT, HIMC_RIGHT, HIMC_LEFT, HIMC_LEFT};
+    for (int i = 0, k = 0; i < score->stroke_count; i++)
+        if (strcmp(stroke(i)->drum, stroke(0)->drum) == 0)
+            TEST_ASSERT_EQUAL_MESSAGE(hands[k++], stroke(i)->hand, made.text);
 }
 
 static void test_a_composite_metre_has_the_length_of_its_parts(void)
@@ -367,6 +407,15 @@ static void test_a_fermata_over_a_barline_holds_the_last_note(void)
     PLAY(BAR(1, FOUR TEMPO(60) C3(8, "") C3(8, MARKS(3)) HELD) BAR(2, C3(16, "")));
     TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, stroke(1)->ornament);
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 4, time_between(2, 4));
+    // of two voices the note that is struck last
+    PLAY(BAR(1, FOUR TEMPO(120) C3(12, "")
+                    C3(4, "") "<backup><duration>16</duration></backup>" NOTE(G, 2, 16, "") HELD)
+             BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.5, time_between(0, 3));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1, time_between(3, 4));
+    // only what is held is no longer measured
+    PLAY(BAR(1, FOUR TEMPO(40) C3(4, MARKS(3)) C3(12, MARKS(3)) HELD) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(8 + 1 + 1, score->stroke_count);
     // a rest, where another part ends with it; once where the note has a fermata itself
     PLAY(BAR(1, FOUR TEMPO(120) C3(12, "") REST(4) HELD) BAR(2, C3(16, "")));
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.5, time_between(0, 3));
@@ -474,6 +523,11 @@ static void test_words_say_how_often_a_repeat_is_played(void)
     expect_times(4, "4 fois");
     expect_times(2, "4x only");
     expect_times(2, "16 bars");
+    // words before its beginning are not of a repeat
+    PLAY(BAR(1, FOUR WORDS("3x") C3(16, ""))
+             BAR(2, "<barline><repeat direction='forward'/></barline>" C3(
+                        16, "") "<barline><repeat direction='backward'/></barline>"));
+    expect_beats(3, 0.0, 4.0, 8.0);
 }
 
 static void test_a_repeat_within_a_bar_repeats_its_first_half(void)
@@ -487,6 +541,43 @@ static void test_a_repeat_within_a_bar_repeats_its_first_half(void)
     TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(3)->drum);
     TEST_ASSERT_TRUE(strcmp(stroke(4)->drum, stroke(5)->drum) != 0);
     expect_dynamics(7, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0, 6.0);
+}
+
+// Fine, D.C., a coda and an ending are of the half where they stand
+static void test_a_bar_with_a_repeat_in_it_keeps_its_signs(void)
+{
+#define MIDDLE(direction) "<barline location='middle'><repeat direction='" direction "'/></barline>"
+#define LEFT "<barline location='left'><repeat direction='forward'/></barline>"
+    PLAY(BAR(1, FOUR C3(16, "") "<sound tocoda='c'/>")
+             BAR(2, LEFT C3(8, "") MIDDLE("backward") NOTE(G, 2, 8, "") "<sound dacapo='yes'/>")
+                 BAR(3, "<sound coda='c'/>" C3(8, "") MIDDLE("backward") NOTE(G, 2, 8, "")));
+    expect_beats(7, 0.0, 4.0, 6.0, 8.0, 10.0, 14.0, 16.0);
+    PLAY(BAR(1, FOUR C3(8, "") MIDDLE("backward") NOTE(
+                    G, 2, 8, "") "<barline><repeat direction='backward' times='3'/></barline>"));
+    expect_beats(5, 0.0, 2.0, 4.0, 6.0, 8.0);
+    TEST_ASSERT_EQUAL_STRING(stroke(2)->drum, stroke(4)->drum);
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(
+        2, "<barline><ending number='1' type='start'/></barline>" C3(
+               16, "") "<barline><ending number='1' type='stop'/><repeat direction='backward'/>"
+                       "</barline>")
+             BAR(3,
+                 "<barline><ending number='2' type='start'/></barline>" C3(8, "") MIDDLE("forward")
+                     NOTE(G, 2, 8, "") "<barline><ending number='2' type='stop'/></barline>")
+                 BAR(4, C3(16, "") "<barline><repeat direction='backward'/></barline>"));
+    // 1 2 1 3, then twice its second half and 4
+    expect_beats(8, 0.0, 4.0, 8.0, 12.0, 14.0, 16.0, 20.0, 22.0);
+}
+
+static void test_a_repeat_may_begin_within_a_bar(void)
+{
+    PLAY(BAR(
+        1, FOUR C3(8, "") "<barline location='middle'><repeat direction='forward'/></barline>" NOTE(
+               G, 2, 8, ""))
+             BAR(2, C3(16, "") "<barline location='right'><repeat direction='backward'/></barline>")
+                 BAR(3, C3(16, "")));
+    expect_beats(6, 0.0, 2.0, 4.0, 8.0, 10.0, 14.0);
+    TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(3)->drum);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
 }
 
 static void test_slashes_are_counted_and_not_played(void)
@@ -531,6 +622,8 @@ int main(void)
     RUN_TEST(test_bells_have_names_in_four_languages);
     RUN_TEST(test_words_say_how_often_a_repeat_is_played);
     RUN_TEST(test_a_repeat_within_a_bar_repeats_its_first_half);
+    RUN_TEST(test_a_repeat_may_begin_within_a_bar);
+    RUN_TEST(test_a_bar_with_a_repeat_in_it_keeps_its_signs);
     RUN_TEST(test_slashes_are_counted_and_not_played);
     RUN_TEST(test_a_metronome_mark_in_words_is_the_tempo);
     RUN_TEST(test_a_sound_or_a_sign_holds_before_the_number_of_words);
@@ -549,6 +642,7 @@ int main(void)
     RUN_TEST(test_al_niente_ends_where_the_notes_end);
     RUN_TEST(test_hairpins_come_from_nothing_and_go_there);
     RUN_TEST(test_eighths_swing_and_what_is_finer_does_not);
+    RUN_TEST(test_eighths_swing_in_bars_and_pickups_of_any_length);
     RUN_TEST(test_what_belongs_to_a_note_swings_with_it);
     RUN_TEST(test_a_gliss_of_a_line_with_words_is_one);
     RUN_TEST(test_a_ritardando_ends_with_its_line);

@@ -546,7 +546,7 @@ static int list_orders(const midi_part *part, change *list, int count)
         if (s->fate != MIDI_PLAYED || s->pedal == MIDI_AS_IT_IS || s->pedal == last)
             continue;
         last = s->pedal;
-        list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head,
+        list[count++] = (change){s->note->seconds - 0.03, s->head,
                                  last == MIDI_OPEN ? "pedal 0" : "pedal 1", NULL};
     }
     return count;

@@ -130,7 +130,7 @@ int himc_midi_key_of(const char *instrument, const char *part, himc_spot spot, b
             continue;
         bool fits = k->how == CLOSED ? !open : k->how == OPENED ? open : k->how != PEDALLED;
         bool better = found < 0 || likeness(k, part, spot) > likeness(find_key(found), part, spot);
-        if (fits && better && (!k->instead || k->spot == spot))
+        if (fits && better)
             found = key;
     }
     return found;
@@ -214,17 +214,13 @@ const char *himc_midi_instrument_like(const char *name, const char *kind, double
 
 int himc_midi_concert_key(const char *text, size_t size)
 {
-    int found = 0;
-    size_t longest = 0;
+    int found = 0; // of two that fit the later row is the longer: "low temple block"
     for (int key = MIDI_BASS_DRUM; key < MIDI_NO_SOUND; key++) {
         const char *sound = find_key(key)->sound;
         size_t length = strlen(sound);
-        if (length > longest && size >= length &&
-            memcmp(text + size - length, sound, length) == 0 &&
-            (size == length || text[size - length - 1] == ' ')) {
+        if (size >= length && memcmp(text + size - length, sound, length) == 0 &&
+            (size == length || text[size - length - 1] == ' '))
             found = key;
-            longest = length;
-        }
     }
     return found;
 }

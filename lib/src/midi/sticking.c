@@ -143,7 +143,7 @@ static void leave_inner(midi_part *part)
 {
     for (int first = 0, next; first < part->count; first = next) {
         const midi_stroke *s = &part->stroke[first];
-        int count = 0, low = 1000, high = 0;
+        int low = 1000, high = 0;
         double dynamic = -1;
         bool alike = true;
         for (next = first;
@@ -152,13 +152,12 @@ static void leave_inner(midi_part *part)
             const midi_stroke *n = &part->stroke[next];
             if (!has_hand(n))
                 continue;
-            count++;
             low = n->key < low ? n->key : low;
             high = n->key > high ? n->key : high;
             dynamic = dynamic < 0 ? n->dynamic : dynamic;
             alike &= fabs(n->dynamic - dynamic) < 0.01;
         }
-        for (int i = first; i < next && count > 2 && alike; i++) {
+        for (int i = first; i < next && alike; i++) {
             midi_stroke *n = &part->stroke[i];
             if (has_hand(n) && n->key != low && n->key != high)
                 n->fate = MIDI_NO_HAND;

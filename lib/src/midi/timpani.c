@@ -80,8 +80,6 @@ static int find_ordered(const midi_state *state, const midi_order *o, int *key)
         if (to < timpano[d].low - 12 || to > timpano[d].high + 12 ||
             (from != 12 && now % 12 != from % 12))
             continue;
-        if (from == 12 && now % 12 == o->value % 12)
-            return -1; // a drum has it
         // rather in the octave, and rather the drum that is written, than the shortest way
         int way = abs(to - now) + (from >= 24 && now != from ? 24 : 0) +
                   (named > 0 && named != d + 1 ? 48 : 0);
@@ -123,6 +121,8 @@ static void follow_orders(const midi_part *part, int first, int count, double un
         if (o->kind != MIDI_TUNING || o->choice > MIDI_TIMPANI)
             continue;
         int drum = find_ordered(state, o, &key);
+        if (drum >= 0 && key == state->key[drum])
+            continue; // it has that pitch
         double begin = o->seconds, end = begin;
         double time = drum < 0 ? 0 : o->length > 0 ? o->length : pedal_time(key - state->key[drum]);
         // a drum that is named moves while it rings, and as fast as it has to

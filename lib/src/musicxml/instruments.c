@@ -333,7 +333,7 @@ static int of_clef(const music_instruments *of, const xml_node *note)
 const music_instrument *himc_music_instrument_of(const music_instruments *of, const xml_node *note)
 {
     int named = find_instrument(of, himc_xml_child(note, "instrument")),
-        current = of->current[of->staves ? himc_music_staff(note) : 0];
+        current = of->current[himc_music_staff(note)];
     current = current < 0 ? of->current[0] : current;
     if (named >= 0 && (of->declared > 1 || current < 0))
         return &of->row[named];

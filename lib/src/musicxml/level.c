@@ -124,6 +124,15 @@ static double find_nothing(const music *m, int part, int lane, double beat)
     return last > beat + SAME ? last : fmax(end, beat + HAIRPIN);
 }
 
+// where the p of an fp begins: with the next stroke, or within a roll
+static double soft_from(const music *m, int part, int lane, double beat, double until)
+{
+    int i = himc_music_first(m, beat + 2 * SAME);
+    while (i < m->note_count && m->notes[i].at.beat < until && !is_in(&m->notes[i], part, lane))
+        i++;
+    return i < m->note_count ? fmin(m->notes[i].at.beat, until) : until;
+}
+
 static void close_hairpin(line *l, const music *m, int part, int lane, int i, double beat)
 {
     double steps = beat - l->from > HAIRPIN ? 2 * STEP : STEP, to = l->now + l->way * steps;
@@ -164,11 +173,13 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
     bool open = l->from >= 0, begins = open && beat < l->from + SAME;
     if (s->meaning == MUSIC_DYNAMIC || s->meaning == MUSIC_FORTEPIANO) {
         bool leads = (mark_value(s) - l->now) * l->way > 0;
-        if (!open || begins || !leads)
+        if (open && !begins && !leads) // subito
+            close_hairpin(l, m, part, lane, i, beat);
+        else if (!open || begins)
             add(l, beat, l->now);
         if (s->meaning == MUSIC_FORTEPIANO) {
             add(l, beat, mark_value(s));
-            beat += LOUD_TIME * second;
+            beat = soft_from(m, part, lane, beat, beat + LOUD_TIME * second);
         }
         add(l, beat, fmod(s->value, 2));
         l->from = begins ? l->from : -1;

@@ -646,8 +646,7 @@ static bool begins_dynamic(const char *words, bool known, music_meaning *meaning
         longest = letters > longest ? letters : longest;
         at += letters;
     }
-    return (length > 1 || known || longest > 2) && strcmp(name, "n") != 0 &&
-           find_dynamic(name, meaning, value);
+    return (length > 1 || known || longest > 2) && find_dynamic(name, meaning, value);
 }
 
 int himc_music_words(const char *words, int most, music_meaning *meaning, double *value)

@@ -32,10 +32,9 @@ static void split_bar(const music_bar *whole, music_bar *half)
     a->backward = whole->split_back;
     a->times = 2;
     a->fine = a->to_coda = a->da_capo = a->dal_segno = false;
-    a->endings &= ~1u;
     b->forward = whole->split_on;
     b->segno = b->coda = false;
-    b->endings &= 1u;
+    b->endings = 0;
 }
 
 static bool split_bars(music *m, himc_error *error)

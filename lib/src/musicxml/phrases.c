@@ -99,13 +99,12 @@ static double read_number(const char *at)
     return number >= LEAST_BPM && number <= MOST_BPM ? number : 0;
 }
 
-// true if one more note stands behind or before a place
-static bool is_sign(const char *text, const char *at, bool behind)
+// true if one more note stands before a place: "♪♪ = ♩♪" is a swing
+static bool is_behind_note(const char *text, const char *at)
 {
-    while (behind ? *at == ' ' : at > text && at[-1] == ' ')
-        at += behind ? 1 : -1;
-    unsigned char c = (unsigned char)(behind ? *at : at > text ? at[-1] : ' ');
-    return c >= 0x80;
+    while (at > text && at[-1] == ' ')
+        at--;
+    return at > text && (unsigned char)at[-1] >= 0x80;
 }
 
 bool himc_music_metronome(const char *text, music_meaning *meaning, double *value)
@@ -122,10 +121,8 @@ bool himc_music_metronome(const char *text, music_meaning *meaning, double *valu
         skip_spaces(&p);
         if (equal || (beats > 0 && !letter)) {
             double number = read_number(p), other = 0;
-            if (equal && number == 0 && !is_sign(text, at, false)) {
+            if (equal && number == 0 && !is_behind_note(text, at))
                 other = read_note(&p);
-                other = is_sign(text, p, true) ? 0 : other; // "♪♪ = ♩♪" is a swing
-            }
             *meaning = other > 0 ? MUSIC_TEMPO_SHARE : MUSIC_TEMPO;
             *value = other > 0 ? other / beats : beats * number;
             if (*value > 0)

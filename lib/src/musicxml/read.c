@@ -221,7 +221,7 @@ static int find_upper(const music_reader *r, const xml_node *note, const xml_nod
             : strcmp(mark, "natural") == 0 ? 0
                                            : alter;
     int up = steps[letter - letters] + alter - himc_xml_whole(pitch, "alter", 0);
-    return up < 1 ? 1 : up > 3 ? 3 : up;
+    return up < 1 ? 1 : up;
 }
 
 static void read_notations(music_reader *r, music_note *n, const xml_node *note,
@@ -389,7 +389,6 @@ static void read_note(music_reader *r, const xml_node *note)
     }
     if (!chord && !grace)
         r->at += length;
-    r->end = fmax(r->end, r->at);
 }
 
 static void read_attributes(music_reader *r, const xml_node *attributes)
@@ -501,7 +500,7 @@ static void read_measure(music_reader *r, const xml_node *measure)
     }
     if (r->slashes && own)
         himc_music_omit(r->music, MUSIC_SLASHES, r->bar);
-    if (r->repeated > 0 && r->repeated <= r->bar)
+    if (r->repeated > 0)
         repeat_bar(r);
     if (bar->length == 0 && r->end == 0)
         r->end = r->time;
@@ -582,8 +581,8 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                               "hidden notes are left out: rolls are played there", 0, ""},
             [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
                                  "notes are not played: they have no pitch or no length", 0, ""},
-            [MUSIC_GRACES] = {"grace note is not played: no time before a note",
-                              "grace notes are not played: no time before a note", 0, ""},
+            [MUSIC_GRACES] = {"grace note is not played: no note follows, or one of more than 8",
+                              "grace notes are not played: no note follows, or more than 8", 0, ""},
             [MUSIC_ATTACKS] = {"accent is not played: no stroke begins there",
                                "accents are not played: no stroke begins there", 0, ""},
             [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",

@@ -174,7 +174,6 @@ static void continue_roll(shaper *s, music_note *roll, music_note *n)
     n->ratio = roll->ratio;
     n->length = n->rolled = end - at;
     n->ring = roll->ring;
-    n->staccato = n->pulled = n->ghost = false;
     roll->ring = 0;
     roll->rolled = at - roll->at.beat;
     if (roll->rolled > SAME)
@@ -184,7 +183,6 @@ static void continue_roll(shaper *s, music_note *roll, music_note *n)
     n->attacked |= roll->attacked;
     n->held |= roll->held;
     n->glides |= roll->glides;
-    n->hand = n->hand ? n->hand : roll->hand;
     roll->length = -1;
 }
 
@@ -505,14 +503,9 @@ static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way
     grace.hand = 0;
     grace.nuance = HIMC_LEGATO;
     grace.dynamic = fmax(way->dynamic - GRACE_SOFTER, 0);
-    double first = n->at.beat - s->graces * GRACE_TIME * s->second;
-    for (int i = 0; i < s->graces; i++) {
-        double at = n->at.beat + (first - n->at.beat) * (s->graces - i) / s->graces;
-        if (first >= 0)
-            emit(s, s->grace[i], at, n->at.beat, &grace);
-        else
-            himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
-    }
+    for (int i = 0; i < s->graces; i++) // a score has beats before the first
+        emit(s, s->grace[i], n->at.beat - (s->graces - i) * GRACE_TIME * s->second, n->at.beat,
+             &grace);
     s->graces = 0;
 }
 
@@ -617,9 +610,7 @@ static void take_signs(shaper *s, double beat, midi_choice choice, int next)
         saying *says = &s->says[kind];
         switch (sign->meaning) {
         case MUSIC_SPOT: says->spot = (himc_spot)sign->value; break;
-        case MUSIC_SPOT_HERE:
-            says->here = sign->at.beat > beat - SAME ? (himc_spot)sign->value : says->here;
-            break;
+        case MUSIC_SPOT_HERE: says->here = (himc_spot)sign->value; break;
         case MUSIC_RING:
             // at a rest it is for what sounds
             if (sign->value < -1)
@@ -631,9 +622,7 @@ static void take_signs(shaper *s, double beat, midi_choice choice, int next)
             break;
         case MUSIC_RING_ALWAYS: says->always = (int)sign->value; break;
         case MUSIC_DAMP: end_at(s, sign->at.beat, MIDI_ANY, -1, 0); break;
-        case MUSIC_HAND:
-            says->hand = sign->at.beat > beat - SAME ? 1 + (int)sign->value : says->hand;
-            break;
+        case MUSIC_HAND: says->hand = 1 + (int)sign->value; break;
         case MUSIC_FERMATA: s->held = sign->at.beat + sign->value; break;
         case MUSIC_MEASURED: says->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, kind); break;

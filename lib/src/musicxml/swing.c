@@ -41,8 +41,7 @@ static bool is_plain(const music *m, int note, const swing *w)
         double in = n->at.beat - begin;
         if (count++ > 2 * MOST_PAIR)
             return false;
-        if (n->at.part == m->notes[note].at.part &&
-            (n->ratio != 1 || (in > SAME && fabs(in - w->unit) > SAME)))
+        if (n->at.part == m->notes[note].at.part && in > SAME && fabs(in - w->unit) > SAME)
             return false;
     }
     return true;
@@ -80,7 +79,10 @@ static void place(const music *m, const midi_file *file, double *to, double *end
             }
         while (bar + 1 < file->bar_count && file->bars[bar + 1].beat < beat + SAME)
             bar++;
-        w.bar = file->bars[bar].beat;
+        // a bar of less than half its metre is a pickup, which ends on a beat
+        const midi_bar *b = &file->bars[bar];
+        double length = bar + 1 < file->bar_count ? b[1].beat - b->beat : HUGE_VAL;
+        w.bar = length < 2.0 * b->beats / b->unit - SAME ? b[1].beat - ceil(length) : b->beat;
         to[i] = w.share != 0.5 && is_plain(m, i, &w) ? swung(&w, beat) : beat;
         end[i] = swung(&w, beat + m->notes[i].length);
     }
