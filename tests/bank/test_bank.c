@@ -316,7 +316,7 @@ static void test_bank_readouts_that_are_alike_are_as_alone_in_any_blocks_on_ever
         for (int i = 0; i < 1000; i++)
             most = fmax(most, fabs(expected[3][i]));
         for (int i = 0; i < 1000; i++)
-            TEST_ASSERT_DOUBLE_WITHIN(6e-7 * most, expected[3][i], expected[1][i]); // -124 dB
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12 * most, expected[3][i], expected[1][i]);
         for (int version = 0; himc_bank_kernel_version(version); version++)
             for (int size = 1; size <= 125; size *= 5) {
                 hear_alike(himc_bank_kernel_version(version), film, size, got);

@@ -7,13 +7,11 @@
 #ifndef HIMC_BANK_KERNEL_H
 #define HIMC_BANK_KERNEL_H
 
-#define HIMC_BANK_LANES 8   ///< oscillators at once, samples at once
-#define HIMC_BANK_PASS 64   ///< samples that are computed ahead from one state
-#define HIMC_BANK_ALIKE 3   ///< readouts that share their waves
-#define HIMC_BANK_ROWS 8    ///< points that are read and pushed together
-#define HIMC_BANK_TABLE 32  ///< numbers of an oscillator's table
-#define HIMC_BANK_TURN 16   ///< samples of the table in single precision
-#define HIMC_BANK_BLOCK 128 ///< oscillators whose waves are in the cache together; chosen
+#define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
+#define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
+#define HIMC_BANK_ALIKE 3  ///< readouts that share their waves
+#define HIMC_BANK_ROWS 8   ///< points that are read and pushed together
+#define HIMC_BANK_TABLE 32 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
 typedef struct himc_bank_waves {
@@ -21,8 +19,6 @@ typedef struct himc_bank_waves {
     const double *table; ///< C_1 .. C_8, S_1 .. S_8, C_9 .. C_16, S_9 .. S_16 of each oscillator
     const double *twice; ///< 2 C_8
     const double *fall;  ///< C_8^2 + S_8^2
-    const float *fine;   ///< C_1 .. C_16, S_1 .. S_16 of each oscillator
-    const double *c, *s; ///< C_16, S_16
 } himc_bank_waves;
 
 typedef struct himc_bank_kernel {
@@ -73,8 +69,7 @@ typedef struct himc_bank_kernel {
                     const double *sign, double by, int distance, int length);
     /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
-    /// The same to each of several, times its gain of each oscillator; of at most HIMC_BANK_BLOCK,
-    /// in single precision: its error is 124 dB below the loudest.
+    /// The same to each of several, times its gain of each oscillator.
     void (*ahead_alike)(const himc_bank_waves *waves, const double *const *gain, int length, int n,
                         double *const *out);
 } himc_bank_kernel;

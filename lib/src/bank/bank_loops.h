@@ -12,11 +12,8 @@ typedef double NAMED(vec) __attribute__((vector_size(WIDTH * sizeof(double)), ma
 typedef double NAMED(loose)
     __attribute__((vector_size(WIDTH * sizeof(double)), may_alias, aligned(sizeof(double))));
 #define LOOSE NAMED(loose)
-typedef float NAMED(singles) __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
-#define SINGLES NAMED(singles)
 #define PARTS (HIMC_BANK_LANES / WIDTH) // vectors of eight lanes
-#define TURN_PARTS (HIMC_BANK_TURN / 2 / WIDTH)
-#define TOGETHER (WIDTH == 8 ? 4 : 2) // oscillators that the unit has registers for
+#define TOGETHER (WIDTH == 8 ? 4 : 2)   // oscillators that the unit has registers for
 
 TARGET static double NAMED(total)(const VEC *sum)
 {
@@ -276,73 +273,62 @@ TARGET static void NAMED(ahead)(const himc_bank_waves *waves, int length, int n,
 }
 
 // The same for waves that several readouts share, each with its own gains: the waves themselves
-// are computed once, in single precision; sixteen samples from a and b, the next sixteen from
-// these turned by C_16, S_16.
-typedef struct NAMED(alike) {
-    float a[HIMC_BANK_PASS / HIMC_BANK_TURN][HIMC_BANK_BLOCK];
-    float b[HIMC_BANK_PASS / HIMC_BANK_TURN][HIMC_BANK_BLOCK];
-    float gain[HIMC_BANK_ALIKE][HIMC_BANK_BLOCK];
-} NAMED(alike);
-
-TARGET static void NAMED(turn_waves)(const himc_bank_waves *waves, const double *const *gain,
-                                     int length, int turns, NAMED(alike) * of)
+// are computed once.
+TARGET static inline __attribute__((always_inline)) void
+NAMED(look_alike)(const himc_bank_waves *waves, const double *const *gain, int length, int eights,
+                  double *const *out)
 {
-    for (int i = 0; i < length; i++) {
-        double a = waves->a[i], b = waves->b[i];
-        for (int t = 0; t < turns; t++) {
-            of->a[t][i] = (float)a;
-            of->b[t][i] = (float)b;
-            double next = waves->c[i] * a + waves->s[i] * b;
-            b = waves->c[i] * b - waves->s[i] * a;
-            a = next;
+    for (int k = 0; k < PARTS; k++) {
+        VEC sum[HIMC_BANK_ALIKE][HIMC_BANK_PASS / HIMC_BANK_LANES], before[2], now[2], next[2];
+        const VEC *x = (const VEC *)waves->table + k;
+        for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+            for (int n = 0; n < eights; n++)
+                memcpy(&sum[r][n], out[r] + n * HIMC_BANK_LANES + k * WIDTH, sizeof **sum);
+        for (int i = 0; i < length; i += 2) {
+#pragma GCC unroll 2
+            for (int m = 0; m < 2; m++) {
+                double a = waves->a[i + m], b = waves->b[i + m];
+                before[m] = a * x[0] + b * x[PARTS];
+                now[m] = a * x[2 * PARTS] + b * x[3 * PARTS];
+                x += 4 * PARTS;
+            }
+#pragma GCC unroll 8
+            for (int n = 0; n < eights; n++) {
+#pragma GCC unroll 3
+                for (int r = 0; r < HIMC_BANK_ALIKE; r++)
+                    sum[r][n] += gain[r][i] * before[0] + gain[r][i + 1] * before[1];
+#pragma GCC unroll 2
+                for (int m = 0; m < 2; m++) {
+                    if (n + 2 < eights)
+                        next[m] = waves->twice[i + m] * now[m] - waves->fall[i + m] * before[m];
+                    before[m] = now[m];
+                    now[m] = next[m];
+                }
+            }
         }
         for (int r = 0; r < HIMC_BANK_ALIKE; r++)
-            of->gain[r][i] = (float)gain[r][i];
+            for (int n = 0; n < eights; n++)
+                memcpy(out[r] + n * HIMC_BANK_LANES + k * WIDTH, &sum[r][n], sizeof **sum);
     }
 }
 
-// `turns` of the waves from turn `first` on, n samples at most
-TARGET static inline __attribute__((always_inline)) void
-NAMED(look_alike)(const himc_bank_waves *waves, const NAMED(alike) * of, int length, int first,
-                  int turns, int n, double *const *out)
-{
-    SINGLES sum[HIMC_BANK_ALIKE][WIDTH / 2][TURN_PARTS] = {{{{0}}}};
-    for (int i = 0; i < length; i++) {
-        const SINGLES *x = (const SINGLES *)(waves->fine + 2 * i * HIMC_BANK_TURN);
-        for (int t = 0; t < turns; t++)
-            for (int k = 0; k < TURN_PARTS; k++) {
-                SINGLES wave = of->a[first + t][i] * x[k] + of->b[first + t][i] * x[TURN_PARTS + k];
-                for (int r = 0; r < HIMC_BANK_ALIKE; r++)
-                    sum[r][t][k] += of->gain[r][i] * wave;
-            }
-    }
-    for (int r = 0; r < HIMC_BANK_ALIKE; r++)
-        for (int t = 0; t < turns; t++)
-            for (int j = 0; j < HIMC_BANK_TURN && (first + t) * HIMC_BANK_TURN + j < n; j++)
-                out[r][(first + t) * HIMC_BANK_TURN + j] += ((const float *)sum[r][t])[j];
-}
-
-// as many turns together as fill the registers
 TARGET static void NAMED(ahead_alike)(const himc_bank_waves *waves, const double *const *gain,
                                       int length, int n, double *const *out)
 {
-    NAMED(alike) of;
-    int turns = (n + HIMC_BANK_TURN - 1) / HIMC_BANK_TURN;
-    NAMED(turn_waves)(waves, gain, length, turns, &of);
-    if (turns < WIDTH / 2)
-        for (int t = 0; t < turns; t++)
-            NAMED(look_alike)(waves, &of, length, t, 1, n, out);
+    if (n == HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 1, out);
+    else if (n == 2 * HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 2, out);
+    else if (n == 4 * HIMC_BANK_LANES)
+        NAMED(look_alike)(waves, gain, length, 4, out);
     else
-        for (int t = 0; t < turns; t += WIDTH / 2)
-            NAMED(look_alike)(waves, &of, length, t, WIDTH / 2, n, out);
+        NAMED(look_alike)(waves, gain, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
 }
 
 #undef EXCHANGE
 #undef LOOSE
 #undef VEC
 #undef PARTS
-#undef SINGLES
-#undef TURN_PARTS
 #undef TOGETHER
 #undef WIDTH
 #undef TARGET

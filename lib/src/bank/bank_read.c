@@ -5,21 +5,15 @@
 ///     y_n = C_n a + S_n b,   a = rp p + rs s,   b = rp s - rs p,
 /// taken from a table for n = 1 .. 16, eight samples at once, and from then on
 ///     y_n = 2 C_8 y_(n-8) - (C_8^2 + S_8^2) y_(n-16).
-/// So a readout costs only when it is read. What goes to a listener's ears is read together.
+/// So a readout costs only when it is read.
 #include "bank/bank_state.h"
 
 #include <string.h>
 
 static himc_bank_waves waves_at(himc_bank *bank, int i)
 {
-    return (himc_bank_waves){bank->a,
-                             bank->b,
-                             bank->table + (size_t)i * HIMC_BANK_TABLE,
-                             bank->twice + i,
-                             bank->fall + i,
-                             bank->fine + 2 * (size_t)i * HIMC_BANK_TURN,
-                             bank->power[4].c + i,
-                             bank->power[4].s + i};
+    return (himc_bank_waves){bank->a, bank->b, bank->table + (size_t)i * HIMC_BANK_TABLE,
+                             bank->twice + i, bank->fall + i};
 }
 
 // Adds the samples 1 .. n of a readout of the oscillators from `first` to `end`; where `stretched`
@@ -28,8 +22,8 @@ static double add_waves(himc_bank *bank, const himc_readout *r, int first, int e
                         double by, int n, double *out)
 {
     double sum = 0;
-    for (int i = first; i < end; i += HIMC_BANK_BLOCK) {
-        int count = end - i < HIMC_BANK_BLOCK ? end - i : HIMC_BANK_BLOCK;
+    for (int i = first; i < end; i += BLOCK) {
+        int count = end - i < BLOCK ? end - i : BLOCK;
         himc_bank_waves waves = waves_at(bank, i);
         if (stretched)
             sum += bank->loops->weigh_more(&waves, r->p + i, r->s + i, r->film + i, by, bank->p + i,
@@ -53,8 +47,8 @@ static void add_alike(himc_bank *bank, const himc_alike *alike)
         r->pass = bank->pass;
         r->part = 0;
     }
-    for (int i = bank->low; i < bank->live; i += HIMC_BANK_BLOCK) {
-        int count = bank->live - i < HIMC_BANK_BLOCK ? bank->live - i : HIMC_BANK_BLOCK;
+    for (int i = bank->low; i < bank->live; i += BLOCK) {
+        int count = bank->live - i < BLOCK ? bank->live - i : BLOCK;
         himc_bank_waves waves = waves_at(bank, i);
         for (int k = 0; k < HIMC_BANK_ALIKE; k++)
             gain[k] = alike->gain[k] + i;

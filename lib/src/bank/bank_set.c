@@ -9,8 +9,7 @@
 #define ACCURACY 1e-3 // rise of stiffness times the square of that; chosen: 0.1 cent
 #define HIGHEST 0.49  // of the sample rate; chosen: just below half, where aliasing begins
 
-#define TABLES (HIMC_BANK_TABLE + HIMC_BANK_TURN) // the second of floats, for C and S
-#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + 3 + TABLES)
+#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + 3 + HIMC_BANK_TABLE)
 #define STATE_ARRAYS 2 // of these, the first: p and s
 
 // takes the next array from the block
@@ -39,7 +38,6 @@ static void share_memory(himc_bank *bank)
     bank->cascade.sign = take(bank, &rest);
     take(bank, &rest); // its second half
     bank->table = rest;
-    bank->fine = (float *)(rest + (size_t)bank->capacity * HIMC_BANK_TABLE);
 }
 
 himc_bank *himc_bank_new(int capacity, himc_error *error)
@@ -98,8 +96,6 @@ static void find_powers(himc_bank *bank, int i)
         double *t = table + n - 1 + (n > LANES ? LANES : 0);
         t[0] = c;
         t[LANES] = s;
-        bank->fine[2 * i * HIMC_BANK_TURN + n - 1] = (float)c;
-        bank->fine[(2 * i + 1) * HIMC_BANK_TURN + n - 1] = (float)s;
         double next = c * c1 - s * s1;
         s = s * c1 + c * s1;
         c = next;
@@ -200,10 +196,9 @@ void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int coun
     bank->count = i;
     // the others are at rest, for good: they have no coefficients
     size_t rest = sizeof(double) * (size_t)(bank->capacity - i);
-    for (int k = 0; k < ARRAYS - TABLES; k++)
+    for (int k = 0; k < ARRAYS - HIMC_BANK_TABLE; k++)
         memset(bank->memory + k * bank->capacity + i, 0, rest);
     memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, rest * HIMC_BANK_TABLE);
-    memset(bank->fine + 2 * (size_t)i * HIMC_BANK_TURN, 0, rest * HIMC_BANK_TURN);
     himc_bank_wake(bank);
     bank->forced = true;
 }

@@ -7,8 +7,9 @@
 
 #define LANES HIMC_BANK_LANES
 #define PASS HIMC_BANK_PASS
-#define LEVELS 4 ///< of the film's strength
-#define POWERS 7 ///< coefficients are kept for 1, 2, 4, .. 64 samples
+#define LEVELS 4  ///< of the film's strength
+#define POWERS 7  ///< coefficients are kept for 1, 2, 4, .. 64 samples
+#define BLOCK 128 ///< oscillators whose waves are in the cache together; chosen
 
 /// Coefficients for a number of samples, or for a substep
 typedef struct bank_rotation {
@@ -83,11 +84,10 @@ struct himc_bank {
     int bounds_left;         ///< ... so that they hold for this number of samples
     bank_film film;
     bank_cascade cascade;
-    double *omega, *decay, *mass, *damped;                                  ///< w, d, m, w_d
-    double *q_per_p;                                                        ///< 1/w_d
-    double *table, *twice, *fall;                                           ///< of himc_bank_waves
-    float *fine;                                                            ///< of himc_bank_waves
-    _Alignas(HIMC_ALIGNMENT) double a[HIMC_BANK_BLOCK], b[HIMC_BANK_BLOCK]; ///< of himc_bank_waves
+    double *omega, *decay, *mass, *damped;              ///< w, d, m, w_d
+    double *q_per_p;                                    ///< 1/w_d
+    double *table, *twice, *fall;                       ///< of himc_bank_waves
+    _Alignas(HIMC_ALIGNMENT) double a[BLOCK], b[BLOCK]; ///< of himc_bank_waves
 };
 
 // the state (bank.c)

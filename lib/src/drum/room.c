@@ -35,14 +35,14 @@
 #define SABINE 0.161    // (s/m)
 #define DIRECTIVITY 4.0 // chosen: between a monopole's in a baffle, 2, and a dipole's, 6
 #define FADE 0.005      // (s) chosen: no click
-#define CACHE_LINE 16   // floats
+#define CACHE_LINE 8    // doubles
 #define FORGOTTEN 5.0   // T60s until it is empty; chosen: -300 dB
 #define LEAST_GAIN 0.1  // g that counts for the level; chosen: all do from T60 = 0.21 s on
 
 // of what enters the delay after each: a Walsh function, orthogonal to those at the ears
-static const float ENTERING[HIMC_ROOM_LINES] = {-1, -1, 1,  1,  -1, -1, 1,  1,  -1, -1, 1,
-                                                1,  -1, -1, 1,  1,  -1, -1, 1,  1,  -1, -1,
-                                                1,  1,  -1, -1, 1,  1,  -1, -1, 1,  1};
+static const double ENTERING[HIMC_ROOM_LINES] = {-1, -1, 1,  1,  -1, -1, 1,  1,  -1, -1, 1,
+                                                 1,  -1, -1, 1,  1,  -1, -1, 1,  1,  -1, -1,
+                                                 1,  1,  -1, -1, 1,  1,  -1, -1, 1,  1};
 
 static himc_room_form form_of(const himc_walls *walls, const int *delay, double rate)
 {
@@ -53,11 +53,10 @@ static himc_room_form form_of(const himc_walls *walls, const int *delay, double 
         double d = delay[l] / rate, ratio = pow(10, -3 * d / t60 * (1 / HIGH_PART - 1));
         double b = ratio * ratio, s = 1 - b, c = 1 - b * cos(angle);
         double p = (c - sqrt((c - s) * (c + s))) / s;
-        double take = pow(10, -3 * d / t60) * (1 - p);
-        f.keep[l] = (float)p;
-        f.take[l] = (float)take;
+        f.keep[l] = p;
+        f.take[l] = pow(10, -3 * d / t60) * (1 - p);
         // of a shorter T60 the longest ways, which nobody hears, would count for all
-        double gain = fmax(take / (1 - p), LEAST_GAIN);
+        double gain = fmax(f.take[l] / (1 - f.keep[l]), LEAST_GAIN);
         loss += (1 / (gain * gain) - 1) / HIMC_ROOM_LINES;
     }
     double absorption = SABINE * walls->volume / t60;
@@ -78,8 +77,8 @@ static himc_room_form present(const himc_room *r)
     double part = r->faded * r->faded * (3 - 2 * r->faded);
     f.out = mean(r->from.out, r->to.out, part);
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        f.take[l] = (float)mean(r->from.take[l], r->to.take[l], part);
-        f.keep[l] = (float)mean(r->from.keep[l], r->to.keep[l], part);
+        f.take[l] = mean(r->from.take[l], r->to.take[l], part);
+        f.keep[l] = mean(r->from.keep[l], r->to.keep[l], part);
     }
     return f;
 }
@@ -128,72 +127,65 @@ void himc_room_leave(himc_room *r)
     r->faded = 1;
 }
 
-// Four delays at once, as any x86-64 has it. Single precision: its noise is 140 dB below the sound.
-typedef float quad __attribute__((vector_size(4 * sizeof(float)), aligned(4), may_alias));
-#define QUADS (HIMC_ROOM_LINES / 4)
+// two delays at once, as any x86-64 has it
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8), may_alias));
+#define PAIRS (HIMC_ROOM_LINES / 2)
 
 // The sums of z with all signs +, and with those of both ears: Walsh functions, orthogonal. Left
-// (+-+--+-+), four times; right (++--++--), then the opposite, twice.
-static float sums(const quad z[QUADS], float ear[2])
+// (+-+--+-+), four times; right (++--++--), then the opposite, twice. The order is one that pairs
+// keep.
+static double sums(const pair *z, double ear[2])
 {
-    quad a[2], b[2];
-    for (int k = 0; k < 2; k++) {
-        quad even = z[2 * k] + z[2 * k + 4], odd = z[2 * k + 1] + z[2 * k + 5];
-        a[k] = even + odd;
-        b[k] = even - odd;
+    pair a[PAIRS / 4], b[PAIRS / 4], c[2], d[2], e[2];
+    for (int k = 0; k < PAIRS / 4; k++) {
+        pair first = z[k] + z[k + PAIRS / 2], second = z[k + PAIRS / 4] + z[k + 3 * PAIRS / 4];
+        a[k] = first + second;
+        b[k] = first - second;
     }
-    quad all = a[0] + a[1], left = b[0] + b[1], right = a[0] - a[1];
-    ear[0] = (left[0] - left[1]) + (left[2] - left[3]);
-    ear[1] = (right[0] + right[1]) - (right[2] + right[3]);
-    return (all[0] + all[1]) + (all[2] + all[3]);
+    for (int k = 0; k < 2; k++) {
+        c[k] = a[k] + a[k + 2];
+        d[k] = a[k] - a[k + 2];
+        e[k] = b[k] + b[k + 2];
+    }
+    ear[0] = (d[0][0] - d[0][1]) + (d[1][0] - d[1][1]);
+    ear[1] = (e[0][0] + e[0][1]) - (e[1][0] + e[1][1]);
+    return (c[0][0] + c[0][1]) + (c[1][0] + c[1][1]);
 }
 
-// four samples of four delays: from delays to samples, and back
-static void transpose(quad x[4])
-{
-    quad a = __builtin_shufflevector(x[0], x[1], 0, 4, 1, 5);
-    quad b = __builtin_shufflevector(x[2], x[3], 0, 4, 1, 5);
-    quad c = __builtin_shufflevector(x[0], x[1], 2, 6, 3, 7);
-    quad d = __builtin_shufflevector(x[2], x[3], 2, 6, 3, 7);
-    x[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
-    x[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-    x[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
-    x[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
-}
-
-// n samples, at most four, of the network from sample `at` of the present ways on; z is behind the
+// n samples, at most two, of the network from sample `at` of the present ways on; z is behind the
 // walls
-static inline __attribute__((always_inline)) void mix(quad z[QUADS], const himc_room_form *f,
+static inline __attribute__((always_inline)) void mix(pair z[PAIRS], const himc_room_form *f,
                                                       int at, int n,
-                                                      float *const way[HIMC_ROOM_LINES],
+                                                      double *const way[HIMC_ROOM_LINES],
                                                       double *const *drum, double *const *ears)
 {
-    const quad *keep = (const quad *)f->keep, *take = (const quad *)f->take;
-    const quad *entering = (const quad *)ENTERING;
-    quad x[QUADS][4];
-    for (int k = 0; k < QUADS; k++) {
-        for (int j = 0; j < 4; j++)
-            x[k][j] = *(const quad *)(way[4 * k + j] + at);
-        transpose(x[k]);
+    const pair *keep = (const pair *)f->keep, *take = (const pair *)f->take;
+    const pair *entering = (const pair *)ENTERING;
+    pair x[2][PAIRS];
+    for (int k = 0; k < PAIRS; k++) { // from two samples of a delay to one of two
+        pair a = *(const pair *)(way[2 * k] + at), b = *(const pair *)(way[2 * k + 1] + at);
+        x[0][k] = (pair){a[0], b[0]};
+        x[1][k] = (pair){a[1], b[1]};
     }
     for (int j = 0; j < n; j++) {
-        float ear[2], left = (float)drum[0][at + j], right = (float)drum[1][at + j];
-        for (int k = 0; k < QUADS; k++)
-            z[k] = keep[k] * z[k] + take[k] * x[k][j];
-        float all = 2.0F / HIMC_ROOM_LINES * sums(z, ear);
+        double ear[2];
+        pair in = {drum[1][at + j], drum[0][at + j]};
+        for (int k = 0; k < PAIRS; k++)
+            z[k] = keep[k] * z[k] + take[k] * x[j][k];
+        double all = 2.0 / HIMC_ROOM_LINES * sums(z, ear);
         ears[0][at + j] = f->out * ear[0];
         ears[1][at + j] = f->out * ear[1];
-        for (int k = 0; k < QUADS; k++)
-            x[k][j] = z[k] - all + entering[k] * (quad){right, left, right, left};
+        for (int k = 0; k < PAIRS; k++)
+            x[j][k] = z[k] - all + entering[k] * in;
     }
-    for (int k = 0; k < QUADS; k++) {
-        transpose(x[k]);
-        for (int j = 0; j < 4; j++) { // each goes to the next delay
-            float *to = way[(4 * k + j + 1) % HIMC_ROOM_LINES] + at;
-            if (n == 4)
-                *(quad *)to = x[k][j];
-            for (int m = 0; m < n && n < 4; m++)
-                to[m] = x[k][j][m];
+    for (int k = 0; k < PAIRS; k++) { // and back; each goes to the next delay
+        double *to = way[2 * k + 1] + at, *next = way[(2 * k + 2) % HIMC_ROOM_LINES] + at;
+        if (n == 2) {
+            *(pair *)to = (pair){x[0][k][0], x[1][k][0]};
+            *(pair *)next = (pair){x[0][k][1], x[1][k][1]};
+        } else {
+            *to = x[0][k][0];
+            *next = x[0][k][1];
         }
     }
 }
@@ -203,8 +195,8 @@ static inline __attribute__((always_inline)) void mix(quad z[QUADS], const himc_
 static void reflect(himc_room *r, const himc_room_form *f, int n, double *const *drum,
                     double *const *ears)
 {
-    float *way[HIMC_ROOM_LINES];
-    quad z[QUADS];
+    double *way[HIMC_ROOM_LINES];
+    pair z[PAIRS];
     memcpy(z, r->y, sizeof z);
     for (int done = 0, run; done < n; done += run) {
         run = n - done; // until one of the rings begins anew
@@ -214,11 +206,10 @@ static void reflect(himc_room *r, const himc_room_form *f, int n, double *const 
             run = run < left ? run : left;
         }
         double *in[] = {drum[0] + done, drum[1] + done}, *out[] = {ears[0] + done, ears[1] + done};
-        int whole = run - run % 4;
-        for (int at = 0; at < whole; at += 4)
-            mix(z, f, at, 4, way, in, out);
-        if (whole < run)
-            mix(z, f, whole, run - whole, way, in, out);
+        for (int at = 0; at < run - 1; at += 2)
+            mix(z, f, at, 2, way, in, out);
+        if (run % 2 == 1)
+            mix(z, f, run - 1, 1, way, in, out);
         for (int l = 0; l < HIMC_ROOM_LINES; l++) {
             int at = r->at[l] + run;
             r->at[l] = at < r->delay[l] ? at : 0;

@@ -29,8 +29,8 @@ typedef struct himc_walls {
 
 /// What a change of the room changes.
 typedef struct himc_room_form {
-    double out;                                         ///< of what an ear hears of each delay
-    float take[HIMC_ROOM_LINES], keep[HIMC_ROOM_LINES]; ///< y = keep y + take x, of a wall
+    double out;                                          ///< of what an ear hears of each delay
+    double take[HIMC_ROOM_LINES], keep[HIMC_ROOM_LINES]; ///< y = keep y + take x, of a wall
 } himc_room_form;
 
 /// The room of a listener. 0: no walls.
@@ -41,8 +41,8 @@ typedef struct himc_room {
     double rate;
     int silent, forget; ///< samples since a sound entered, or EMPTY; and as many make it so
     int delay[HIMC_ROOM_LINES], at[HIMC_ROOM_LINES]; ///< (samples); in it, of the coming sample
-    float y[HIMC_ROOM_LINES];
-    float line[HIMC_ROOM_LINES][HIMC_ROOM_LINE];
+    double y[HIMC_ROOM_LINES];
+    double line[HIMC_ROOM_LINES][HIMC_ROOM_LINE];
 } himc_room;
 
 /// Sets the walls, at a sample rate. They change over in 5 ms.
