@@ -58,7 +58,7 @@ static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN,
 // (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of
 // the room, at most 1 s: its answer biases decays, while tunings need what is left of a pair
 #define LIKELY_WINDOWS 2
-static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {0.6, 1.0}};
+static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {0.6, 1.2}};
 
 // of a pair, per the usual one: each head is uneven in its own way
 static const double splits[] = {0, 0.5, 1, 1.5, 2};
