@@ -50,17 +50,19 @@ static const struct {
 #define SIZES (sizeof sizes / sizeof *sizes)
 #define OUTSIDE 30.0 // an octave beyond them is less likely by so much (dB)
 
-#define USUAL_WITHIN 0.35 // chosen
+#define USUAL_WITHIN 0.25 // chosen
 #define LONGER 1.3        // a pair rings longer than the room by this, or it is not used
 #define RINGING 8         // (1,1) .. (8,1); early, the last two are among others as loud
 #define PAIRS (RINGING + 4)
-#define FINE 40            // tunings tried either way ...
-#define EARLY_STEP 0.00025 // ... per frequency, coarsely ...
-#define FINE_STEP 0.0001   // ... and finely
-#define TUNED_WITHIN 0.002 // by one pair in a room that outlasts it; chosen, as in our room
-#define STRANGE 0.05       // part of pairs that tell something else; chosen
-#define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
-#define HELD 0.5           // ... and, in a room that outlasts it, so much more
+#define FINE 40              // tunings tried either way ...
+#define EARLY_STEP 0.00025   // ... per frequency, coarsely ...
+#define FINE_STEP 0.0001     // ... and finely
+#define TUNED_WITHIN 0.002   // by one pair in a room that outlasts it; chosen, as in our room
+#define STRANGE 0.05         // part of pairs that tell something else; chosen
+#define SUREST 0.03          // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
+#define HELD 0.2             // ... and, in a room that outlasts it, so much more
+#define MISTUNED 5           // a pair of an uneven head is beside its place; tried ...
+#define MISTUNED_STEP 0.0001 // ... per frequency
 #define DECAYS_TRIED 49
 #define TRIED_MOST (2 * FINE + 1) // of tunings and decays
 #define DECAY_STEP 0.05           // (ln)
@@ -300,15 +302,22 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
 {
     ringing pair[PAIRS];
     double likely[PAIRS][DECAYS_TRIED], decay[DECAYS_TRIED], best = -INFINITY, at[2] = {1, 1};
-    const double none = 0;
+    double each[MISTUNED][DECAYS_TRIED], shift[MISTUNED];
     int count = find_ringing(partials->room, d, pair, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
+        for (int j = 0; j < MISTUNED; j++)
+            shift[j] = MISTUNED_STEP * (j - MISTUNED / 2) * pair[i].frequency;
         if (!partials_likely(sound, partials->room > 0 ? PARTIALS_LAST : PARTIALS_EARLY,
-                             partials->room, pair[i].frequency, pair[i].apart, &none, 1, decay,
-                             DECAYS_TRIED, likely[i], error))
+                             partials->room, pair[i].frequency, pair[i].apart, shift, MISTUNED,
+                             decay, DECAYS_TRIED, each[0], error))
             return false;
+        for (int k = 0; k < DECAYS_TRIED; k++) {
+            likely[i][k] = -INFINITY;
+            for (int j = 0; j < MISTUNED; j++)
+                likely[i][k] = fmax(likely[i][k], each[j][k]);
+        }
         double held = partials->room * pair[i].due / log(1000); // by the room
         blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);
     }

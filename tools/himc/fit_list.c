@@ -2,7 +2,9 @@
 /// the pressure of each says how loud it is.
 ///
 /// The pressures follow from one blow on a list in which all are alike: what its partials are
-/// louder or softer than those found is taken back, twice, since near ones hide each other.
+/// louder or softer than those found is taken back, twice, since near ones hide each other. All
+/// modes together are heavier than the mallet: under a lighter list it chatters, and levels then
+/// depend on the blow and the sample rate by up to 20 dB.
 #include "fit_list.h"
 
 #include "base/text.h"
@@ -12,9 +14,9 @@
 #include <string.h>
 
 #define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
-#define MASS 0.05     // (kg) chosen
-#define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
-#define ROUNDS 3
+#define MASS 0.1      // (kg) per mode: what all have together where it is struck, three mallets'
+#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest; chosen: as loud as lists.c and drums
+#define ROUNDS 2
 #define CLEAR 0.0           // (dB) a partial less clear is the room's
 #define NEAR 1.5            // (Hz)
 #define BEAT 1.1            // (s) before the blow
@@ -75,8 +77,8 @@ static bool write(const list *l, double radius, const char *path, cli_file *file
             radius);
     for (int i = 0; i < l->count; i++)
         fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
-                fmax(1e-12, PRESSURE * l->pressure[i] / loudest), l->of[i]->frequency,
-                fmin(l->t60[i], 60), MASS);
+                fmax(1e-12, PRESSURE * l->count * l->pressure[i] / loudest), l->of[i]->frequency,
+                fmin(l->t60[i], 60), MASS * l->count);
     return cli_file_close(file, error);
 }
 
@@ -96,7 +98,7 @@ static void choose(const partials_list *found, list *l)
     }
     for (int i = 0; i < l->count; i++) {
         l->t60[i] = l->of[i]->t60;
-        l->pressure[i] = pow(10, l->of[i]->level / 20) / l->of[i]->frequency;
+        l->pressure[i] = 1 / l->of[i]->frequency; // all alike
     }
 }
 
@@ -155,6 +157,7 @@ bool fit_list(const partials_sound *sound, const partials_list *found, double ra
         bool good = write(&l, radius, path, file, error) &&
                     hear(file, sound->rate < LOWEST_RATE ? RATE : sound->rate, &heard, error) &&
                     partials_find(&heard, FIT_LIST_HIGHEST, made, error);
+        made->room = found->room; // what beats there is a line here as well
         if (good)
             partials_lines(&heard, made);
         partials_sound_free(&heard);

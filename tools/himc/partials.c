@@ -36,9 +36,12 @@
 #define AROUND 60.0        // (Hz) neighbours on either side, or ...
 #define PAIR 10.0          // (Hz) around a pair of a drum's modes ...
 #define PAIR_SECONDS 5.0   // ... in a window at most so long ...
-#define PAIR_PART 0.5      // ... or so much of T60, at least 1 s ...
+#define PAIR_PART 0.8      // ... or so much of T60, at least 1 s ...
 #define SINGLE 0.02        // (Hz) nearer ones are one
 #define PAIR_LEAST 20      // ... of so many decimated samples or more
+#define NOISE_MOST 1e6     // noise is softer than the room at first, at most by this ...
+#define NOISE_STEP 10.0    // ... and tried in such steps ...
+#define NOISE_DECAYS 8     // ... with each so-manyth decay
 #define AROUND_PART 0.12   // ... so much of the frequency
 
 // windows that are compared: `first` (s) after the onset (the contact is over), each `next` later
@@ -55,7 +58,7 @@ static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN,
 // (s) from the onset to windows that overlap and share their weight; to the last ones per T60 of
 // the room, at most 1 s: its answer biases decays, while tunings need what is left of a pair
 #define LIKELY_WINDOWS 2
-static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {1.2, 2.0}};
+static const double from_onset[][LIKELY_WINDOWS] = {{0.03, 0.1}, {0.5, 1.0}, {0.6, 1.2}};
 
 // of a pair, per the usual one: each head is uneven in its own way
 static const double splits[] = {0, 0.5, 1, 1.5, 2};
@@ -395,21 +398,40 @@ static double left_by(const band *b, double rate, const double at[3])
     return fmax(left, 0) / (all + 1e-30);
 }
 
-// What a pair leaves is the room's sound, which decays, and noise: each sample counts by what is
-// left there, as at the window's end or above.
-static void weigh(band *b, double rate, double room)
+// What a pair leaves is the room's sound, which decays, and noise, which at the window's beginning
+// is softer by `most`: each sample counts by them. Returns ln of the energy beside that weight's.
+static double weigh(band *b, double rate, double room, double most)
 {
-    double level[2] = {0}; // of the window's beginning and end
-    int tenth = b->samples / 10 + 1;
-    for (int c = 0; c < b->tracks; c++)
-        for (int k = 0; k < 2 * tenth; k++) {
-            int n = k < tenth ? k : b->samples - 1 - (k - tenth);
+    double energy = 0, logs = 0;
+    for (int n = 0; n < b->samples; n++) {
+        b->weight[n] = room > 0 ? 1 / (pow(1e-6, n / rate / room) + 1 / most) : 1;
+        logs += log(b->weight[n]) / b->samples;
+        for (int c = 0; c < b->tracks; c++) {
             const double *z = &b->z[2 * (c * b->samples + n)];
-            level[k >= tenth] += z[0] * z[0] + z[1] * z[1];
+            energy += b->weight[n] * (z[0] * z[0] + z[1] * z[1]);
         }
-    double most = fmax(1, level[0] / (level[1] + 1e-30));
-    for (int n = 0; n < b->samples; n++)
-        b->weight[n] = room > 0 ? fmin(most, pow(1e6, n / rate / room)) : 1;
+    }
+    return log(energy + 1e-30) - logs;
+}
+
+// at the noise that is likeliest, by some of the decays
+static void weigh_likely(band *b, double rate, double room, double apart, const double *decay,
+                         int decays)
+{
+    double likeliest = INFINITY, chosen = 1;
+    for (double most = 1; room > 0 && most <= NOISE_MOST; most *= NOISE_STEP) {
+        double energy = weigh(b, rate, room, most), least = 1;
+        for (int i = 0; i < decays; i += NOISE_DECAYS)
+            for (int k = 0; k < 2; k++) {
+                double at[3] = {0, k * 0.5 * apart < SINGLE ? 0 : k * 0.5 * apart, log(decay[i])};
+                least = fmin(least, left_by(b, rate, at));
+            }
+        if (energy + log(least + 1e-6) < likeliest) {
+            likeliest = energy + log(least + 1e-6);
+            chosen = most;
+        }
+    }
+    weigh(b, rate, room, chosen);
 }
 
 bool partials_likely(const partials_sound *sound, partials_part part, double room, double frequency,
@@ -429,7 +451,7 @@ bool partials_likely(const partials_sound *sound, partials_part part, double roo
         size_t from = (size_t)(start * b.sound->rate) + (size_t)b.half;
         if (!band_fill(&b, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
-        weigh(&b, rate, room);
+        weigh_likely(&b, rate, room, apart, decay, decays);
         // the filter passes half of the band
         double free = 0.5 / LIKELY_WINDOWS * b.samples * b.tracks;
         for (int i = 0; i < shifts * decays; i++) {

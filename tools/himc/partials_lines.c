@@ -2,9 +2,10 @@
 ///
 /// In a hall ESPRIT finds poles of the hall between the instrument's, whose sum is a line that no
 /// pole is like. A line is a peak of the spectrum of .12 to 1.2 s, all channels together; its T60
-/// is the slope of its envelope from .15 s to 2.2 s or 35 dB down. If the envelope departs from
-/// that by less than 2.5 dB, the line takes the place of the poles about it. Else it is a pair that
-/// beats, or the hall's noise (4 to 6 dB), and its poles stay.
+/// is the slope of its envelope from .15 s to 2.2 s or 35 dB down, its level what shows so high
+/// there. If the envelope departs from the slope by less than 2.5 dB, the line takes the place of
+/// the poles about it. Else it is a pair that beats, or the hall's noise (4 to 6 dB), and its poles
+/// stay.
 #include "partials.h"
 
 #include <math.h>
@@ -74,12 +75,27 @@ bool partials_levels(const partials_sound *sound, double from, double to, const 
     return x;
 }
 
+// (s), of the spectrum
+static double end_of(const partials_sound *sound)
+{
+    return fmin(TO, (double)shortest(sound) / sound->rate);
+}
+
 static bool find_spectrum(const partials_sound *sound, double level[BINS])
 {
-    double end = fmin(TO, (double)shortest(sound) / sound->rate), frequency[BINS];
+    double end = end_of(sound), frequency[BINS];
     for (int k = 0; k < BINS; k++)
         frequency[k] = LOWEST + STEP * k;
     return end - FROM > LEAST_LONG && partials_levels(sound, FROM, end, frequency, BINS, level);
+}
+
+// level (dB) in that spectrum of a partial whose level at the onset is 0
+static double shown(const partials_sound *sound, double t60)
+{
+    double rate = sound->low->rate, length = floor((end_of(sound) - FROM) * rate), sum = 0;
+    for (int i = 0; i < length; i++)
+        sum += 0.5 * (1 - cos(2 * HIMC_PI * i / length)) * pow(1000, -(FROM + i / rate) / t60);
+    return 20 * log10(sum) + 10 * log10(sound->tracks);
 }
 
 // how far a peak stands above the deeper valley's counterpart: the shallower one counts
@@ -104,8 +120,9 @@ static int find_peaks(const double level[BINS], partial *out, int most)
         if (b < a || b <= c || b < top - SOFTEST || prominence(level, k) < PROMINENT)
             continue;
         double aside = 0.5 * (a - c) / (a - 2 * b + c);
-        out[count++] =
-            (partial){.frequency = LOWEST + STEP * (k + aside), .clear = prominence(level, k)};
+        out[count++] = (partial){.frequency = LOWEST + STEP * (k + aside),
+                                 .level = b - 0.25 * (a - c) * aside,
+                                 .clear = prominence(level, k)};
     }
     return count;
 }
@@ -146,7 +163,7 @@ static int find_envelope(const partials_sound *all, double frequency, double wid
     return count;
 }
 
-// level at the onset and T60 by a straight line through the envelope; false if it is not straight
+// T60 by a straight line through the envelope; false if it is not straight
 static bool find_slope(const double *e, int count, double width, partial *out)
 {
     double st = 0, se = 0, stt = 0, ste = 0, top = -INFINITY, left = 0;
@@ -160,12 +177,11 @@ static bool find_slope(const double *e, int count, double width, partial *out)
     if (n < LEAST_TICKS)
         return false;
     double spread = stt / n - st * st / n / n, slope = (ste / n - st * se / n / n) / spread;
-    out->level = se / n - slope * st / n;
+    double onset = se / n - slope * st / n;
     for (int i = 0; i < n; i++)
-        left += pow(e[i] - out->level - slope * (BEGIN + TICK * i), 2) / n;
+        left += pow(e[i] - onset - slope * (BEGIN + TICK * i), 2) / n;
     out->t60 = slope < -1 ? -60 / slope : 0;
     out->t60_error = 60 * sqrt(left / fmax(3, TICK * n * width) / spread) / (slope * slope);
-    out->energy = out->level + 10 * log10(out->t60);
     return out->t60 > 0 && sqrt(left) < STRAIGHT && out->t60_error < ERROR_MOST * out->t60;
 }
 
@@ -197,6 +213,8 @@ void partials_lines(const partials_sound *sound, partials_list *list)
         p->frequency_error = 0.1 / (TO - FROM);
         p->line =
             find_slope(envelope, find_envelope(sound, p->frequency, width, envelope), width, p);
+        p->level -= p->t60 > 0 ? shown(sound, p->t60) : 0;
+        p->energy = p->level + 10 * log10(p->t60);
     }
     for (int i = 0; count > 0 && i < list->count; i++)
         if (stays(&list->row[i], line, count, list->room > 0))
