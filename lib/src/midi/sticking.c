@@ -7,7 +7,8 @@
 /// to its hand's last than the planner can leap (hand.c), or for which the arms would cross over
 /// another drum at once, is not possible; one that is left out costs more than any that is played,
 /// and the more the louder it is. A roll gives way to what follows it, down to a stroke of each
-/// hand; where that is still too long, a short one is a single stroke, and the other hand is free.
+/// hand. Where a stroke is still left out, all is looked for again, and a short roll may be a
+/// single stroke, so that the other hand is free.
 #include "base/head_frame.h"
 #include "midi/part.h"
 #include "plan/hand.h"
@@ -102,13 +103,15 @@ static double leaves_roll(const midi_part *part, int roll, double at)
     return at > end - CUT_TIME ? begin : begin + fmin(0.5 * (end - begin), LEAST_ROLL);
 }
 
-// a written roll that is short and goes on from none
+// a short roll of a note that has no other parts
 static bool can_be_single(const midi_part *part, int stroke)
 {
-    const midi_stroke *s = &part->stroke[stroke];
-    double begin = s->note->seconds;
-    return s->note->way.length > 0 && s->roll.end - begin < SHORT_ROLL &&
-           roll_begin(part, stroke) == begin;
+    const midi_stroke *s = &part->stroke[stroke], *next = s + 1, *end = part->stroke + part->count;
+    bool whole = s->note->way.length > 0 && !s->note->way.extra &&
+                 s->roll.end - s->note->seconds < SHORT_ROLL;
+    for (; whole && next < end && next->note->seconds < s->roll.end + CUT_TIME; next++)
+        whole = !(next->note->way.extra && next->roll.length > 0 && next->head == s->head);
+    return whole;
 }
 
 // the state's keys are the index of each hand's last stroke, and 1 if that is a roll's single one
@@ -203,8 +206,10 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
 {
     const midi_state first = {.key = {-1, -1}};
     leave_inner(part);
-    int8_t *hand = malloc((size_t)part->count + 1);
-    bool good = hand && himc_midi_search(part, &first, CHOICES, choose, hand);
+    int8_t *hand = calloc((size_t)part->count + 1, 1);
+    bool good = hand && himc_midi_search(part, &first, OMIT + 1, choose, hand);
+    if (good && memchr(hand, OMIT, (size_t)part->count)) // rather one stroke than a note lost
+        good = himc_midi_search(part, &first, CHOICES, choose, hand);
     for (int i = 0; good && i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         if (s->foot)
