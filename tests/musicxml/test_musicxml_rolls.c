@@ -284,6 +284,88 @@ static void test_a_note_on_another_drum_after_a_roll_is_never_lost(void)
     }
 }
 
+#define ON(more) \
+    "<note><pitch><step>%c</step><octave>%c</octave></pitch><duration>%d</duration>" more "</note>"
+
+// a roll of `length` 16ths and a note on another drum: all pairs of four drums, 4 beats each
+static void load_pairs(int tempo, int length)
+{
+    static const char *const drums[] = {"F2", "B2", "C3", "G3"};
+    static const char *const types[] = {"", "<type>16th</type>", "<type>eighth</type>",
+                                        "<type>eighth</type><dot/>", "<type>quarter</type>"};
+    char text[16384];
+    int n = snprintf(text, sizeof text,
+                     HEAD PART("Timpani") "<measure number='1'>" FOUR "<sound tempo='%d'/>", tempo);
+    for (int k = 0; k < 16; k++) {
+        const char *from = drums[k / 4], *to = drums[k % 4];
+        if (from == to)
+            continue;
+        n += snprintf(text + n, sizeof text - (size_t)n,
+                      ON("%s" MARKS(3)) ON("") "<note><rest/><duration>%d</duration></note>",
+                      from[0], from[1], length, types[length], to[0], to[1], 4, 12 - length);
+    }
+    snprintf(text + n, sizeof text - (size_t)n, "</measure>" TAIL);
+    load(text);
+}
+
+// the strikes of what was made: each pair's roll and note at their beats on their drums, on time
+static void expect_struck(void)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = himc_performance_new(&config, &error);
+    himc_command play;
+    himc_event event;
+    int found = 0;
+    TEST_ASSERT_TRUE_MESSAGE(p && himc_performance_load_text(p, made.text, "made", &error) &&
+                                 himc_command_parse_text(&play, HIMC_PERFORMER, "play", &error) &&
+                                 himc_performance_command(p, &play, 0, &error),
+                             error.text);
+    double end = stroke(score->stroke_count - 1)->beat, all = time_between(-lead(), end);
+    for (int i = 0; i < (all + 1) * config.sample_rate / 480; i++) {
+        himc_performance_process(p, 480, NULL);
+        while (himc_performance_event(p, &event))
+            for (int k = 0; k < score->stroke_count && event.kind == HIMC_EVENT_STRIKE; k++)
+                found += fabs(stroke(k)->beat - event.strike.beat) < 1e-4 &&
+                         strcmp(stroke(k)->drum, event.strike.drum) == 0 &&
+                         fabs(event.strike.time - event.strike.planned_time) < 0.01;
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(score->stroke_count, found, made.text);
+    TEST_ASSERT_EQUAL(0, himc_performance_measure(p).missed);
+    himc_performance_free(p);
+}
+
+// it ends earlier, or is one stroke where a hand could not leave it in time
+static void test_a_short_roll_gives_way_to_a_note_on_another_drum(void)
+{
+    static const int tempi[] = {60, 96, 120, 144, 176, 208};
+    int rolls = 0, singles = 0;
+    for (int i = 0; i < 24; i++) {
+        int length = 1 + i % 4, before = singles;
+        double beats = length / 4.0;
+        load_pairs(tempi[i / 4], length);
+        expect_text("24 of 24 notes for timpani are played");
+        TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
+        TEST_ASSERT_EQUAL_MESSAGE(24, score->stroke_count, made.text);
+        for (int k = 0; k < 24; k += 2) {
+            const himc_stroke *first = stroke(k), *next = stroke(k + 1);
+            TEST_ASSERT_FLOAT_WITHIN(1e-3, lead() + 2 * k, first->beat);
+            TEST_ASSERT_FLOAT_WITHIN(1e-3, lead() + 2 * k + beats, next->beat);
+            TEST_ASSERT_EQUAL(HIMC_PLAIN, next->ornament);
+            TEST_ASSERT_TRUE(strcmp(first->drum, next->drum) != 0);
+            bool roll = first->ornament == HIMC_ROLL_SINGLE;
+            TEST_ASSERT_EQUAL_FLOAT(roll ? beats : 0, first->length);
+            TEST_ASSERT_TRUE(roll || first->hand != next->hand);
+            rolls += roll;
+            singles += !roll;
+        }
+        if (beats * 60 / tempi[i / 4] > 0.3)
+            TEST_ASSERT_EQUAL_MESSAGE(before, singles, made.text);
+        if (length == 2 && tempi[i / 4] == 144)
+            expect_struck();
+    }
+    TEST_ASSERT_TRUE(rolls > 100 && singles > 50);
+}
+
 // its softer end is short, but the hand may leave already from its louder beginning
 static void test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum(void)
 {
@@ -346,6 +428,7 @@ static void test_a_roll_that_begins_with_another_drum_is_struck_on_the_beat(void
     TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
     TEST_ASSERT_TRUE(stroke(0)->hand != stroke(1)->hand);
     TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, stroke(2)->ornament);
+    expect_text("1 note is played as 1 roll");
 }
 
 static void test_a_grace_on_another_drum_is_a_stroke(void)
@@ -498,6 +581,7 @@ int main(void)
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     RUN_TEST(test_a_roll_on_two_bars_has_both);
     RUN_TEST(test_a_note_on_another_drum_after_a_roll_is_never_lost);
+    RUN_TEST(test_a_short_roll_gives_way_to_a_note_on_another_drum);
     RUN_TEST(test_a_short_roll_with_an_accent_gives_way_to_the_farthest_drum);
     RUN_TEST(test_a_fast_tremolo_of_two_notes_is_a_roll_on_both);
     RUN_TEST(test_a_trill_on_bars_is_of_two_notes);

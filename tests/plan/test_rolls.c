@@ -210,6 +210,35 @@ static void test_rounds_of_a_loop_whose_tempo_changed_in_a_roll_are_whole_rolls(
     himc_performance_free(p);
 }
 
+// a hand that has just struck another drum, or is about to, leaves the beginning to the other one
+static void test_a_roll_begins_on_its_beat_with_the_hand_that_is_free(void)
+{
+    static const char *const hands[] = {"left", "right"};
+    for (int k = 0; k < 4; k++) {
+        int busy = k % 2, first = -1;
+        heard h = {0};
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "drum far");
+        session_do(p, "tempo 60");
+        session_drum(p, 0, busy ? "place 0.7 0.4 0.85 0" : "place 0.7 -0.4 0.85 0");
+        session_drum(p, 1, busy ? "place 0.7 -0.4 0.85 0" : "place 0.7 0.4 0.85 0");
+        session_do(p, "stroke %g %s legato mf normal far", k < 2 ? 1.88 : 2.12, hands[busy]);
+        session_do(p, "roll 2 1 single mf mf normal kettle");
+        session_do(p, "play");
+        session_play(p, 4, &h);
+        sort(&h);
+        for (int i = h.strikes - 1; i >= 0; i--)
+            first = strcmp(h.strike[i].drum, "kettle") == 0 ? i : first;
+        TEST_ASSERT_TRUE(first >= 0 && h.strikes > 4);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2, h.strike[first].beat);
+        TEST_ASSERT_EQUAL_INT(1 - busy, h.strike[first].hand);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_play_from_within_a_roll_plays_the_rest_of_it(void)
 {
     heard h = {0}, all = {0};
@@ -268,6 +297,7 @@ int main(void)
     RUN_TEST(test_intervals_of_a_roll_stay_when_the_tempo_changes_in_it);
     RUN_TEST(test_a_slider_of_the_tempo_leaves_a_roll_even);
     RUN_TEST(test_rounds_of_a_loop_whose_tempo_changed_in_a_roll_are_whole_rolls);
+    RUN_TEST(test_a_roll_begins_on_its_beat_with_the_hand_that_is_free);
     RUN_TEST(test_play_from_within_a_roll_plays_the_rest_of_it);
     RUN_TEST(test_a_roll_added_while_its_beats_play_is_played_from_there_and_a_past_one_is_missed);
     return UNITY_END();

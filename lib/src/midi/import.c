@@ -221,9 +221,9 @@ static void count_fates(midi_part *part)
             himc_text_list(part->bars[fate], sizeof part->bars[0], bar->number);
         s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
         part->damped += s->damped;
-        bool roll = s->roll.length > 0 && s->fate == MIDI_PLAYED;
+        bool played = s->fate == MIDI_PLAYED, roll = s->roll.length > 0 && played;
         part->rolls += roll;
-        part->rolled += (roll || (s->in_roll && s->fate == MIDI_PLAYED)) && !s->note->way.extra;
+        part->rolled += (roll || (played && (s->in_roll || s->note->way.begins_roll))) && !extra;
     }
 }
 
@@ -601,7 +601,8 @@ static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_str
                         dynamic_word(first, s->dynamic), dynamic_word(last, s->roll.last_dynamic),
                         spot, s->part, space, drum);
     else
-        himc_text_print(t, "%s %.9g %s %s %s %s %s%s%s;\n", ornaments[way->ornament], beat,
+        himc_text_print(t, "%s %.9g %s %s %s %s %s%s%s;\n",
+                        ornaments[way->length > 0 ? HIMC_PLAIN : way->ornament], beat,
                         himc_hand_name(s->hand), himc_nuance_name(way->nuance),
                         dynamic_word(first, s->dynamic), spot, s->part, space, drum);
 }

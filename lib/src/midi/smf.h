@@ -29,10 +29,11 @@ typedef struct midi_way {
     double said;            ///< the dynamic that `himc export` says of it in MIDI; below 0: none
     himc_ornament ornament; ///< flam, drag, ruff or none; of a roll its kind, or none: single
     himc_spot spot;
-    int hand;   ///< 1 + himc_hand; 0: any
-    int drum;   ///< of timpani: 1 low .. 4 high; 0: any
-    int ring;   ///< 1: it rings on, -1: it is damped at its end, 0: as usual
-    bool extra; ///< a stroke of a note that has others: a grace, a part of a tremolo
+    int hand;         ///< 1 + himc_hand; 0: any
+    int drum;         ///< of timpani: 1 low .. 4 high; 0: any
+    int ring;         ///< 1: it rings on, -1: it is damped at its end, 0: as usual
+    bool extra;       ///< a stroke of a note that has others: a grace, a part of a tremolo
+    bool begins_roll; ///< a roll that is an extra of it follows at once
 } midi_way;
 
 /// Grace notes that are played before it.

@@ -6,7 +6,9 @@
 /// of its instrument: hand by hand, as players do also where one hand had the time. A stroke nearer
 /// to its hand's last than the planner can leap (hand.c), or for which the arms would cross over
 /// another drum at once, is not possible; one that is left out costs more than any that is played,
-/// and the more the louder it is.
+/// and the more the louder it is. A roll gives way to what follows it, down to a stroke of each
+/// hand. Where a stroke is still left out, all is looked for again, and a short roll may be a
+/// single stroke, so that the other hand is free.
 #include "base/head_frame.h"
 #include "midi/part.h"
 #include "plan/hand.h"
@@ -15,7 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OMIT = HIMC_HANDS };
+// choices that are no hand: none; a roll is one stroke, of the left hand or the right
+enum { OMIT = HIMC_HANDS, SINGLE, CHOICES = SINGLE + HIMC_HANDS };
 
 #define NEED 2.0        // of the least time of a leap: what is quicker costs; chosen
 #define WRITTEN 0.8     // of the time of a leap: who wrote the hand may know better; chosen
@@ -28,9 +31,11 @@ enum { OMIT = HIMC_HANDS };
 #define ACROSS_TIME 0.3 // ... and meet if that one has struck so shortly before (s)
 #define SAME_TIME 1e-7  // (beats)
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
-#define LEAST_ROLL 0.1  // of a roll that gives way (s), or its half; chosen
+#define LEAST_ROLL 0.1  // of a roll that gives way to a stroke within it (s), or its half; chosen
+#define SHORT_ROLL 0.3  // what lasts longer is never one stroke (s); chosen: above each leap
 #define MOST_CUTS 16    // strokes among which the parts of a roll are looked for; chosen
 #define CUT_TIME 1e-3   // from one part of a roll to the next (s)
+#define ONE_STROKE 24.0 // more than of a hurry, with it less than of leaving out
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
 /// A stroke of one hand.
@@ -39,15 +44,22 @@ typedef struct place {
     double x, y, z; ///< (m)
 } place;
 
+// true if a hand plays a roll, and not one stroke for it
+static bool is_rolling(const midi_part *part, const midi_state *state, int hand)
+{
+    int stroke = state->key[hand];
+    return stroke >= 0 && part->stroke[stroke].roll.length > 0 && !state->key[HIMC_HANDS + hand];
+}
+
 // of a stroke; -1: at first each hand is before its own side
-static place place_of(const midi_part *part, int stroke, int hand, int now)
+static place place_of(const midi_part *part, int stroke, int hand, bool rolling)
 {
     if (stroke < 0)
         return (place){-1e3, 0.5, hand == HIMC_LEFT ? 0.2 : -0.2, 1};
     const midi_head *head = &part->head[part->stroke[stroke].head];
     const midi_stroke *s = &part->stroke[stroke];
     double at = s->note->seconds;
-    if (s->roll.length > 0 && stroke != now) // its last stroke, about
+    if (rolling) // its last stroke, about
         at = fmax(at, himc_midi_stroke_end(s) - ROLL_STROKE);
     const himc_head_frame frame = {
         .center = {head->x, head->y, head->z}, .tilt = head->tilt, .radius = head->radius};
@@ -61,10 +73,10 @@ static place place_of(const midi_part *part, int stroke, int hand, int now)
 static bool is_second(const midi_part *part, const midi_state *state, int stroke)
 {
     int first = state->key[HIMC_LEFT];
-    if (first < 0 || first != state->key[HIMC_RIGHT])
+    if (first != state->key[HIMC_RIGHT] || !is_rolling(part, state, HIMC_LEFT))
         return false;
     const midi_stroke *a = &part->stroke[first], *b = &part->stroke[stroke];
-    return a->roll.length > 0 && fabs(a->roll.length - b->roll.length) < SAME_TIME &&
+    return fabs(a->roll.length - b->roll.length) < SAME_TIME &&
            fabs(a->note->beat - b->note->beat) < SAME_TIME &&
            (a->head != b->head || strcmp(a->part, b->part) != 0);
 }
@@ -83,18 +95,42 @@ static double roll_begin(const midi_part *part, int roll)
     return begin;
 }
 
-// the state's key is the index of each hand's last stroke
-static bool choose(const midi_part *part, int stroke, int hand, midi_state *state)
+// when a hand may leave a roll for a stroke at that time: from its beginning, as a stroke of each
+// hand is enough, but not so early for one within it (s)
+static double leaves_roll(const midi_part *part, int roll, double at)
+{
+    double begin = roll_begin(part, roll), end = himc_midi_stroke_end(&part->stroke[roll]);
+    return at > end - CUT_TIME ? begin : begin + fmin(0.5 * (end - begin), LEAST_ROLL);
+}
+
+// a short roll of a note that has no other parts
+static bool can_be_single(const midi_part *part, int stroke)
+{
+    const midi_stroke *s = &part->stroke[stroke], *next = s + 1, *end = part->stroke + part->count;
+    bool whole = s->note->way.length > 0 && !s->note->way.extra &&
+                 s->roll.end - s->note->seconds < SHORT_ROLL;
+    for (; whole && next < end && next->note->seconds < s->roll.end + CUT_TIME; next++)
+        whole = !(next->note->way.extra && next->roll.length > 0 && next->head == s->head);
+    return whole;
+}
+
+// the state's keys are the index of each hand's last stroke, and 1 if that is a roll's single one
+static bool choose(const midi_part *part, int stroke, int choice, midi_state *state)
 {
     const double omit = 45, omit_loud = 20; // costs of a stroke left out: of any, more of fff
-    if (hand == OMIT) {
+    if (choice == OMIT) {
         state->cost += omit + omit_loud * part->stroke[stroke].dynamic;
         return true;
     }
-    place to = place_of(part, stroke, hand, stroke),
-          from = place_of(part, state->key[hand], hand, stroke),
-          other = place_of(part, state->key[1 - hand], 1 - hand, stroke);
-    if (is_second(part, state, stroke)) {
+    bool single = choice >= SINGLE;
+    if (single && !can_be_single(part, stroke))
+        return false;
+    int hand = choice % SINGLE;
+    bool rolling = is_rolling(part, state, hand);
+    place to = place_of(part, stroke, hand, false),
+          from = place_of(part, state->key[hand], hand, rolling),
+          other = place_of(part, state->key[1 - hand], 1 - hand, is_rolling(part, state, 1 - hand));
+    if (!single && is_second(part, state, stroke)) {
         state->key[hand] = stroke;
         return (hand == HIMC_LEFT) == (to.y > from.y);
     }
@@ -107,11 +143,9 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     double leap = himc_hand_leap_time(s.way), need = s.same_spot ? AGAIN_TIME : NEED * leap;
     // a roll is left earlier for what follows: its strokes too near to that are left out
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
-    if (before && before->roll.length > 0) {
-        double begin = roll_begin(part, state->key[hand]), end = himc_midi_stroke_end(before);
-        double left = begin + fmin(0.5 * (end - begin), LEAST_ROLL);
-        s.gap = fmax(s.gap, fmin(to.at - left, s.same_spot ? AGAIN_TIME : leap));
-    }
+    if (rolling)
+        s.gap = fmax(s.gap, fmin(to.at - leaves_roll(part, state->key[hand], to.at),
+                                 s.same_spot ? AGAIN_TIME : leap));
     // on one spot 0.055 s, as the planner refuses 0.04 s
     int written = part->stroke[stroke].note->way.hand;
     if (s.gap < (s.same_spot ? 0.055 : written == 1 + hand ? WRITTEN * leap : leap))
@@ -126,10 +160,13 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     bool bars = before && before->part[0] && before->head == part->stroke[stroke].head;
     if (bars && s.way > 0 && s.gap < s.other_gap && s.gap < HIMC_STICKING_ANEW)
         state->cost += AGAIN_BARS;
-    state->cost += written > 0 && written != 1 + hand ? OTHER_HAND : 0;
+    state->cost += (written > 0 && written != 1 + hand ? OTHER_HAND : 0) + ONE_STROKE * single;
     state->key[hand] = stroke;
-    if (part->stroke[stroke].roll.length > 0)
+    state->key[HIMC_HANDS + hand] = single;
+    if (part->stroke[stroke].roll.length > 0 && !single) {
         state->key[1 - hand] = stroke;
+        state->key[HIMC_HANDS + 1 - hand] = false;
+    }
     return true;
 }
 
@@ -169,8 +206,10 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
 {
     const midi_state first = {.key = {-1, -1}};
     leave_inner(part);
-    int8_t *hand = malloc((size_t)part->count + 1);
-    bool good = hand && himc_midi_search(part, &first, HIMC_HANDS + 1, choose, hand);
+    int8_t *hand = calloc((size_t)part->count + 1, 1);
+    bool good = hand && himc_midi_search(part, &first, OMIT + 1, choose, hand);
+    if (good && memchr(hand, OMIT, (size_t)part->count)) // rather one stroke than a note lost
+        good = himc_midi_search(part, &first, CHOICES, choose, hand);
     for (int i = 0; good && i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         if (s->foot)
@@ -180,7 +219,9 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
         if (hand[i] == OMIT)
             s->fate = MIDI_NO_HAND;
         else
-            s->hand = (himc_hand)hand[i];
+            s->hand = (himc_hand)(hand[i] % SINGLE);
+        if (hand[i] >= SINGLE)
+            s->roll = (midi_roll){0};
     }
     free(hand);
     return good || himc_error_set(error, "out of memory for %d strokes", part->count);

@@ -388,6 +388,7 @@ static double emit_between(shaper *s, const music_note *n, double end, double lo
             midi_way one = way;
             one.ornament = HIMC_PLAIN;
             one.length = 0;
+            one.begins_roll = true;
             one.dynamic = fmin(way.dynamic + louder, 1);
             emit(s, n, at, at, &one);
             way.extra = true;

@@ -346,9 +346,39 @@ static double listed_since(const planner_score *score, int i, int in_round, himc
                          himc_planner_score_seconds(score, part->list[at - 1].stroke.beat);
 }
 
+/// Whether a stroke of a roll at `own` leaves its hand too little time (s) to one of its list, or
+/// that one to it: the written one is played.
+static bool is_too_near(const planner_score *score, const planner_roll *r, double own,
+                        const planner_stroke *listed, double turned)
+{
+    const himc_stroke *s = &listed->stroke;
+    double leap = leap_time(r, way_to(score, r, s, listed->drum));
+    double time = turned + himc_planner_score_seconds(score, s->beat) - s->early;
+    return fabs(time - own) < fmax(PLANNER_LEAST_ROOM, leap);
+}
+
+static bool is_left_out(const planner_score *score, int i, int in_round, const himc_stroke *stroke)
+{
+    const planner_part *part = &score->part[stroke->hand];
+    const planner_roll *r = roll_of(score, i, stroke->hand);
+    int after = himc_planner_part_place(part, stroke), count = part->count;
+    bool begun = has_begun(score, in_round), more = goes_on(score, in_round);
+    double own = himc_planner_score_seconds(score, stroke->beat), turned = 0;
+    if (count == 0)
+        return false;
+    if (begun || more)
+        turned = himc_planner_score_round_length(score);
+    bool wraps = after == 0, over = after == count; // the one before or after is of another round
+    return ((!wraps || begun) &&
+            is_too_near(score, r, own, &part->list[(wraps ? count : after) - 1],
+                        wraps ? -turned : 0)) ||
+           ((!over || more) &&
+            is_too_near(score, r, own, &part->list[over ? 0 : after], over ? turned : 0));
+}
+
 /// The right hand begins, but not where a roll goes on from there on a drum to the left, nor where
 /// only with the other one a short roll comes to the stroke after it at its rate.
-static himc_hand lead_of(const planner_score *score, int i, int in_round)
+static himc_hand usual_lead(const planner_score *score, int i, int in_round)
 {
     const planner_roll *r = &score->roll[i];
     int before = joined_before(score, i, in_round);
@@ -372,6 +402,19 @@ static himc_hand lead_of(const planner_score *score, int i, int in_round)
                         &other_early);
     bool better = bend_of(&h, rate) < bend_of(&g, rate) - RATE_GAIN;
     return better && other_early < early + JOIN_GAIN ? HIMC_LEFT : HIMC_RIGHT;
+}
+
+/// The same; but the other one where that one has a stroke too near, so that it begins on its beat.
+static himc_hand lead_of(const planner_score *score, int i, int in_round)
+{
+    himc_stroke first[HIMC_HANDS] = {score->roll[i].stroke, score->roll[i].stroke};
+    himc_hand lead = usual_lead(score, i, in_round), other = himc_other_hand(lead);
+    first[lead].hand = lead;
+    first[other].hand = other;
+    return is_left_out(score, i, in_round, &first[lead]) &&
+                   !is_left_out(score, i, in_round, &first[other])
+               ? other
+               : lead;
 }
 
 /// The same as listed_next of the next roll.
@@ -470,36 +513,6 @@ static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid 
     s.dynamic = roll->dynamic + share * (roll->last_dynamic - roll->dynamic);
     s.bounce_time = bounce_time(g, number, s.bounces);
     return s;
-}
-
-/// Whether a stroke of a roll at `own` leaves its hand too little time (s) to one of its list, or
-/// that one to it: the written one is played.
-static bool is_too_near(const planner_score *score, const planner_roll *r, double own,
-                        const planner_stroke *listed, double turned)
-{
-    const himc_stroke *s = &listed->stroke;
-    double leap = leap_time(r, way_to(score, r, s, listed->drum));
-    double time = turned + himc_planner_score_seconds(score, s->beat) - s->early;
-    return fabs(time - own) < fmax(PLANNER_LEAST_ROOM, leap);
-}
-
-static bool is_left_out(const planner_score *score, int i, int in_round, const himc_stroke *stroke)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    const planner_roll *r = roll_of(score, i, stroke->hand);
-    int after = himc_planner_part_place(part, stroke), count = part->count;
-    bool begun = has_begun(score, in_round), more = goes_on(score, in_round);
-    double own = himc_planner_score_seconds(score, stroke->beat), turned = 0;
-    if (count == 0)
-        return false;
-    if (begun || more)
-        turned = himc_planner_score_round_length(score);
-    bool wraps = after == 0, over = after == count; // the one before or after is of another round
-    return ((!wraps || begun) &&
-            is_too_near(score, r, own, &part->list[(wraps ? count : after) - 1],
-                        wraps ? -turned : 0)) ||
-           ((!over || more) &&
-            is_too_near(score, r, own, &part->list[over ? 0 : after], over ? turned : 0));
 }
 
 int himc_planner_roll_left_out(const planner_score *score, int i)
