@@ -58,10 +58,31 @@ static void test_turns_in_the_air_are_on_no_head(void)
         TEST_ASSERT_EQUAL_INT(-1, falls[i].head);
 }
 
+// a slow camera makes them as fast as blows, and there are as many of them
+static void test_no_head_is_over_another_where_a_hand_strikes_both(void)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) { // of the blows; else it is a marker's height
+        himc_fall falls[2 * LOUD];
+        himc_strike_head heads[HIMC_STRIKE_HEADS];
+        for (int i = 0; i < 2 * LOUD; i++) {
+            falls[i] = blow(i, i % 2 ? 3 : 2.8, 0);
+            falls[i].hand = i < LOUD ? (himc_hand)hand : HIMC_LEFT;
+            falls[i].x.z += i < LOUD ? 0 : 0.14;
+        }
+        TEST_ASSERT_EQUAL_INT(1 + hand, himc_strike_heads(falls, 2 * LOUD, heads));
+        for (int i = 0; i < 2 * LOUD; i++)
+            TEST_ASSERT_EQUAL_INT(hand == 0 && i >= LOUD, falls[i].head < 0);
+        for (int i = 0; i < 2 * LOUD; i++) // beside it, it is another drum
+            falls[i].x.y += i < LOUD ? 0 : 0.3;
+        TEST_ASSERT_EQUAL_INT(2, himc_strike_heads(falls, 2 * LOUD, heads));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_soft_blows_are_on_the_head_of_loud_ones);
     RUN_TEST(test_turns_in_the_air_are_on_no_head);
+    RUN_TEST(test_no_head_is_over_another_where_a_hand_strikes_both);
     return UNITY_END();
 }

@@ -1,6 +1,7 @@
 """`himc lesson` against takes with planted faults, and its page, tables and errors."""
 
 import csv
+import functools
 import json
 import math
 import os
@@ -186,6 +187,49 @@ def own_take(text):
     subprocess.run([HIMC, "render", path("own.txt", text), "-o", path("own.wav"), "--set", f"record {path('own.bvh')}", "--quiet", "--rate", "8000"],
                    check=True, capture_output=True)
     return json.loads(lesson(path("own.txt"), path("own.bvh"), "--json")[1])
+
+
+EXERCISE = "tempo 90;\n" + "".join(f"stroke {1 + i} {HANDS[i % 2]} {'accent f' if i % 8 == 0 else 'legato mf'};\n" for i in range(22))
+COORDINATES = [f"{hand}_tip_{axis}_m" for hand in HANDS for axis in "xyz"]
+
+
+@functools.cache
+def model_motion():
+    """rows of a clean take of both tips at 250 Hz, with all that hands do between strokes: time, then x, y, z of left and right"""
+    subprocess.run([HIMC, "render", path("motion.txt", EXERCISE), "-o", path("own.wav"), "--motion", path("motion.csv"), "--columns", "tips", "--quiet", "--rate", "8000"],
+                   check=True, capture_output=True)
+    with open(path("motion.csv")) as file:
+        return [[float(row[name]) for name in ("time_s", *COORDINATES)] for row in csv.DictReader(file)]
+
+
+def at_times(rows, times):
+    """rows at other times, on the straight line between two"""
+    new, k = [], 0
+    for t in times:
+        while k + 2 < len(rows) and rows[k + 1][0] < t:
+            k += 1
+        part = (t - rows[k][0]) / (rows[k + 1][0] - rows[k][0])
+        new.append([t] + [a + part * (b - a) for a, b in zip(rows[k][1:], rows[k + 1][1:])])
+    return new
+
+
+def told_of(rows):
+    with open(path("tips.csv"), "w") as file:
+        file.write(",".join(("time_s", *COORDINATES)) + "\n")
+        file.writelines(",".join(f"{x:.8f}" for x in row) + "\n" for row in rows)
+    status, out, err = lesson(path("motion.txt", EXERCISE), path("tips.csv"), "--json")
+    assert status == 0, err
+    return json.loads(out), err
+
+
+def test_one_take_is_told_the_same_at_any_rate():
+    rows = model_motion()
+    draw = lesson_takes.random.Random(1)
+    for rate in (250, 120, 100, 60, 50, 30):
+        told, _ = told_of(at_times(rows, [i / rate for i in range(int(rows[-1][0] * rate))]))
+        assert told["matched"] == 22 and told["extra"] == 0 and not told["faults"], (rate, told)
+    told, _ = told_of([[row[0]] + [x + draw.gauss(0, 0.0005) for x in row[1:]] for row in rows])
+    assert told["matched"] == 22 and told["extra"] == 0 and not told["faults"], told
 
 
 def test_the_models_own_rolls_are_told_no_fault():

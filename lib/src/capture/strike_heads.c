@@ -7,7 +7,8 @@
 /// most seeds within their tolerances is taken (RANSAC: Fischler & Bolles 1981; scored as MSAC:
 /// Torr & Zisserman 2000). Then any fall near the plane is on it, also the softest, and the plane
 /// is fitted again to all of these by weighted least squares. If a good part of the seeds lie
-/// elsewhere and agree on another plane, that is another drum.
+/// elsewhere and agree on another plane, that is another drum; but not where a hand strikes through
+/// it onto a lower head: there the stick is turned in the air.
 ///
 /// A head gives way, and more to a faster stick, so soft blows end above the plane of loud ones.
 /// Where rebounds tell how deep each fall went, sharp falls that lie on the head at rest are on it,
@@ -25,6 +26,8 @@
 #include <stdlib.h>
 
 #define LEAST_SEEDS 3 // with fewer all sharp falls are seeds; no fewer make another drum
+#define OVER 0.05     // chosen: a plane is above a head by more (m) ...
+#define BESIDE 0.1    // ... and where the hand falls on both less far apart (m)
 
 typedef struct seeds {
     const himc_fall **fall;
@@ -187,6 +190,36 @@ static int seeds_on(const seeds *s, int head)
     return n;
 }
 
+// the higher of two planes, if a hand falls on both at one place; else -1
+static int in_the_air(const himc_fall *falls, int count, int a, int b)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 sum[2] = {{0}};
+        double n[2] = {0};
+        for (int i = 0; i < count; i++)
+            if ((int)falls[i].hand == hand && (falls[i].head == a || falls[i].head == b)) {
+                int on = falls[i].head == b;
+                sum[on] = himc_vec3_madd(sum[on], 1, falls[i].x);
+                n[on]++;
+            }
+        if (n[0] < 2 || n[1] < 2)
+            continue;
+        himc_vec3 d =
+            himc_vec3_sub(himc_vec3_scale(sum[1], 1 / n[1]), himc_vec3_scale(sum[0], 1 / n[0]));
+        if (fabs(d.z) > OVER && hypot(d.x, d.y) < BESIDE)
+            return d.z > 0 ? b : a;
+    }
+    return -1;
+}
+
+static void give_up(himc_fall *falls, int count, himc_strike_head *heads, int head)
+{
+    for (int i = 0; i < count && head >= 0; i++)
+        falls[i].head = falls[i].head == head ? -1 : falls[i].head;
+    if (head >= 0)
+        heads[head].strikes = 0;
+}
+
 int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_STRIKE_HEADS])
 {
     double *speeds = calloc((size_t)count + 1, sizeof *speeds);
@@ -214,6 +247,9 @@ int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_S
         if (!other)
             break;
     }
+    for (int k = 1; k < n; k++)
+        for (int i = 0; i < k; i++)
+            give_up(falls, count, heads, in_the_air(falls, count, i, k));
     // the most struck first
     for (int i = 1; i < n; i++)
         for (int k = i; k > 0 && heads[k].strikes > heads[k - 1].strikes; k--) {
@@ -224,6 +260,8 @@ int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_S
                 if (falls[j].head == k || falls[j].head == k - 1)
                     falls[j].head = 2 * k - 1 - falls[j].head;
         }
+    while (n > 0 && heads[n - 1].strikes == 0)
+        n--;
     free(speeds);
     free((void *)(uintptr_t)s.fall);
     return memory ? n : -1;

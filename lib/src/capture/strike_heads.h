@@ -3,6 +3,7 @@
 #ifndef HIMC_STRIKE_HEADS_H
 #define HIMC_STRIKE_HEADS_H
 
+#include "himc/mocap.h"
 #include "himc/vec.h"
 
 #include <stdbool.h>
@@ -15,8 +16,9 @@ typedef struct himc_fall {
     double speed;  ///< downward before it (m/s)
     double within; ///< distance in height at which it is still on a head (m)
     double depth;  ///< of x below the head at rest; 0: unknown (m)
-    bool sharp;    ///< as abrupt as a blow; else not much less
-    int head;      ///< out: index of the head that it is on, -1 if none
+    himc_hand hand;
+    bool sharp; ///< as abrupt as a blow; else not much less
+    int head;   ///< out: index of the head that it is on, -1 if none
 } himc_fall;
 
 /// A plane, not steep: z = height + slope_x (x - x0) + slope_y (y - y0).

@@ -243,6 +243,7 @@ static bool find_falls(const himc_take *take, const himc_take_tip *tip, himc_han
                                           .depth = above_intersection(&strike),
                                           .speed = s.down,
                                           .within = within,
+                                          .hand = hand,
                                           .sharp = width < widest && s.bend > noise_bend(t, h)};
     }
     return true;
