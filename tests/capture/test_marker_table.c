@@ -108,6 +108,31 @@ static void test_time_behind_the_markers_and_semicolons_are_read(void)
     himc_take_free(take);
 }
 
+static void test_rows_at_uneven_times_are_read_at_even_ones(void)
+{
+    // A moves at 1 m/s; the row at 30 ms is not there, and for a second none is
+    char text[4000] = "time_s,A_x_m,A_y_m,A_z_m\n";
+    for (int row = 0; row < 100; row++) {
+        double t = row == 3 ? 0.035 : 0.01 * row + (row > 50 ? 0.2 : 0);
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%.3f,%.3f,0,1\n", t, t);
+    }
+    himc_take *take = read("a.csv", text);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 100, himc_take_rate(take));
+    TEST_ASSERT_EQUAL_INT(120, himc_take_frames(take));
+    check_point(take, 0, 3, 0.03, 0, 1);
+    check_point(take, 0, 50, 0.5, 0, 1);
+    check_point(take, 0, 71, 0.71, 0, 1);
+    TEST_ASSERT_EQUAL_INT(20, himc_take_missing(take, 0));
+    himc_take_free(take);
+    strcpy(text, "time_s,A_x_m,A_y_m,A_z_m\n"); // 60 Hz in hundredths is even
+    for (int row = 0; row < 61; row++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%.2f,0,0,%d\n", row / 60.0, row);
+    take = read("a.csv", text);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 60, himc_take_rate(take));
+    check_point(take, 0, 31, 0, 0, 31);
+    himc_take_free(take);
+}
+
 static void test_decimal_commas_are_read_where_no_comma_parts_the_cells(void)
 {
     himc_take *take = read("a.csv", "time_s;A_x_m;A_y_m;A_z_m\n0;0,25;-1,5e-1;1\n0,01;0;0;1\n");
@@ -237,6 +262,7 @@ int main(void)
     RUN_TEST(test_qualisys_tables_are_read_with_and_without_frame_and_time);
     RUN_TEST(test_columns_of_any_csv_are_found_by_name_and_unit);
     RUN_TEST(test_time_behind_the_markers_and_semicolons_are_read);
+    RUN_TEST(test_rows_at_uneven_times_are_read_at_even_ones);
     RUN_TEST(test_decimal_commas_are_read_where_no_comma_parts_the_cells);
     RUN_TEST(test_motive_is_read_with_the_markers_as_measured);
     RUN_TEST(test_motive_without_markers_or_header_is_refused);

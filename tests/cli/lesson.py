@@ -232,6 +232,17 @@ def test_one_take_is_told_the_same_at_any_rate():
     assert told["matched"] == 22 and told["extra"] == 0 and not told["faults"], told
 
 
+def test_rows_at_uneven_times_are_told_as_at_even_ones():
+    rows = model_motion()
+    middle = rows[len(rows) // 2][0]
+    for kind, when in (("wait", lambda t: t + 0.3 * min(1, max(0, t - middle) / 0.05)), ("tempo", lambda t: t - 0.003 * t * t)):
+        uneven = [[when(row[0])] + row[1:] for row in rows]
+        told, noted = told_of(uneven)
+        even, _ = told_of(at_times(uneven, [i / 250 for i in range(int(250 * uneven[-1][0]))]))
+        assert [f["kind"] for f in told["faults"]] == [f["kind"] for f in even["faults"]] == [kind], (told, even)
+        assert abs(told["faults"][0]["effect"] - even["faults"][0]["effect"]) < 0.1 and ("rows are up to" in noted) == (kind == "wait"), (told, even, noted)
+
+
 def test_the_models_own_rolls_are_told_no_fault():
     for between in (1, 2, 5):
         closed = lesson_takes.rolls(between, 6)[0]

@@ -26,8 +26,9 @@
 ///
 /// Any: one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
 /// NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others are not
-/// read. So motion.csv of `himc render` is a take, too. Where a semicolon or a tab parts the
+/// read. So motion.csv of `himc render` is a take, too. Rows may come at uneven times. Where a semicolon or a tab parts the
 /// cells, numbers may have a decimal comma.
+#include "base/noise.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
@@ -36,13 +37,18 @@
 #include <string.h>
 
 #define NOT_THERE (-1)
+#define ROUNDED 0.3 // chosen: of a step; times in hundredths are off so much at 60 Hz
+#define BRIDGED 0.1 // chosen: a fall takes longer (s)
 
 typedef struct plan {
     himc_take *take;
     himc_text text; // its next line is the first row
     size_t size;    // of the file (bytes)
     char separator;
-    double rate; // (Hz), 0: by the time column
+    double rate;   // (Hz), 0: by the time column
+    double *times; // of the rows (s), then; owned
+    bool uneven;   // the times are not those of an even rate
+    int frames;    // at the rate
     int points;
     int *begin;           // column of each point's x (points), rising; owned
     himc_span *names;     // (points); owned
@@ -496,41 +502,111 @@ static bool read_row(const plan *p, himc_span line, int frame, double *time)
     return true;
 }
 
+// the times of a table that has only a time column
+static bool read_times(plan *p, int rows)
+{
+    himc_span line;
+    plan look = *p;
+    p->times = malloc((size_t)rows * sizeof *p->times);
+    if (!p->times)
+        return himc_error_set(p->error, "%s: no memory for %d rows", p->take->file, rows);
+    for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
+        himc_span cell = {"", 0};
+        if (count_filled(line, p->separator) == 0)
+            continue;
+        for (int column = 0; column <= p->time; column++)
+            cell = himc_span_cell(&line, p->separator);
+        if (!read_number(&look, cell, "the time", &p->times[row++]))
+            return false;
+    }
+    return rows > 1 || refuse(p, "one row: no rate");
+}
+
+// the rate, and how many frames that makes: rows that are off an even rate by more than rounding
+// are moved to even times, a median step apart
+static bool find_rate(plan *p, int rows)
+{
+    const double *t = p->times;
+    double mean = (t[rows - 1] - t[0]) / (rows - 1), off = 0, least = mean, most = mean;
+    double *step = malloc((size_t)rows * sizeof *step);
+    for (int k = 1; step && k < rows; k++) {
+        step[k - 1] = t[k] - t[k - 1];
+        least = fmin(least, step[k - 1]), most = fmax(most, step[k - 1]);
+        off = fmax(off, fabs(t[k] - t[0] - k * mean));
+    }
+    double usual = step ? himc_median(step, rows - 1) : NAN;
+    free(step);
+    if (!isfinite(usual))
+        return himc_error_set(p->error, "%s: no memory for %d rows", p->take->file, rows);
+    p->rate = 1 / mean;
+    p->uneven = least > 0 && off > fmax(0.001, ROUNDED * mean);
+    if (least <= 0 && mean > 0)
+        himc_take_note(p->take,
+                       "rate: the times do not rise with each row; the rows are read as even, "
+                       "%.6g s apart",
+                       mean);
+    if (!p->uneven)
+        return true;
+    double frames = (t[rows - 1] - t[0]) / usual + 1.5;
+    if (frames > (double)p->size / p->points)
+        return himc_error_set(p->error,
+                              "%s: rows are up to %.6g s apart, %.6g s usually, expected even ones",
+                              p->take->file, most, usual);
+    p->rate = 1 / usual;
+    p->frames = (int)frames;
+    if (most > 3 * usual)
+        himc_take_note(p->take,
+                       "rate: rows are up to %.4g s apart, %.4g s usually; they are read at even "
+                       "times, on straight lines between two, and as gaps beyond %g s",
+                       most, usual, BRIDGED);
+    return true;
+}
+
+// moves the rows to even times
+static bool make_even(plan *p, int rows)
+{
+    himc_take *take = p->take;
+    size_t points = (size_t)take->points;
+    himc_vec3 *even = malloc((size_t)p->frames * points * sizeof *even);
+    if (!even)
+        return himc_error_set(p->error, "%s: no memory for %d frames", take->file, p->frames);
+    for (int frame = 0, row = 0; frame < p->frames; frame++) {
+        double time = p->times[0] + frame / p->rate;
+        while (row + 2 < rows && p->times[row + 1] <= time)
+            row++;
+        double apart = p->times[row + 1] - p->times[row],
+               part = fmin((time - p->times[row]) / apart, 1);
+        bool on = part < 1e-6 || part > 1 - 1e-6; // a row itself
+        for (int i = 0; i < take->points; i++) {
+            himc_vec3 a = *himc_take_at(take, row, i), b = *himc_take_at(take, row + 1, i);
+            himc_vec3 x = himc_vec3_madd(a, part, himc_vec3_sub(b, a));
+            even[(size_t)frame * points + (size_t)i] = on && part < 0.5  ? a
+                                                       : on              ? b
+                                                       : apart > BRIDGED ? himc_vec3_gap()
+                                                                         : x;
+        }
+    }
+    free(take->x);
+    take->x = even;
+    take->frames = p->frames;
+    return true;
+}
+
 static bool read_table(plan *p)
 {
     himc_span line;
     int rows = count_rows(p);
     if (rows == 0)
         return refuse(p, "no rows");
-    if (p->rate == 0 && !p->strict) {
-        // a table that has only a time column: from its first to its last row
-        double time[3] = {NAN, NAN, NAN}; // of the first, second and last row (s)
-        plan look = *p;
-        for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
-            himc_span cell = {"", 0};
-            if (count_filled(line, p->separator) == 0)
-                continue;
-            for (int column = 0; column <= p->time; column++)
-                cell = himc_span_cell(&line, p->separator);
-            bool is_read = row < 2 || row == rows - 1;
-            if (is_read && !read_number(&look, cell, "the time", &time[row < 2 ? row : 2]))
-                return false;
-            row++;
-        }
-        double last = time[rows < 3 ? rows - 1 : 2];
-        double step = (last - time[0]) / (rows - 1), early = time[1] - time[0];
-        // chosen: 2 % are more than the rounding of the column
-        if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
-            himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
-                           early, step);
-        if (rows == 1)
-            return refuse(p, "one row: no rate");
-        p->rate = 1 / step;
-    }
+    p->frames = rows;
+    if (p->rate == 0 && !p->strict && !(read_times(p, rows) && find_rate(p, rows)))
+        return false;
     if (p->size / (size_t)p->points < (size_t)rows)
         return refuse(p, "more markers than the rows have cells for");
-    if (!himc_take_allocate(p->take, p->rate, rows, p->points, false, p->error))
+    int most = p->frames > rows ? p->frames : rows;
+    if (!himc_take_allocate(p->take, p->rate, most, p->points, false, p->error))
         return false;
+    p->take->frames = rows;
     for (int i = 0; i < p->points; i++)
         himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
     double first = NAN, last = NAN;
@@ -548,7 +624,7 @@ static bool read_table(plan *p)
         himc_take_note(p->take,
                        "rate: the Time column steps by %.6g s, DataRate means %.6g s and is used",
                        step, said);
-    return true;
+    return !p->uneven || make_even(p, rows);
 }
 
 static bool read_as(himc_take *take, const void *bytes, size_t size, char separator,
@@ -563,6 +639,7 @@ static bool read_as(himc_take *take, const void *bytes, size_t size, char separa
               .error = error};
     take->format_up = himc_vec3_make(0, 0, 1);
     bool good = head(&p) && read_table(&p);
+    free(p.times);
     free(p.begin);
     free(p.names);
     return good;
