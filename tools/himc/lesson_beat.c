@@ -132,27 +132,57 @@ static double slope_of(const lesson_course *c)
     return lesson_median(c->scratch, n);
 }
 
-// a phrase left out before matched stroke k is named; true if the beat begins again after it
-static bool left_out(lesson *l, const lesson_course *c, int k, bool jumps)
+// a fault, its text empty, if a phrase is missing between the asked strokes `from` and `to`
+static lesson_fault *find_phrase(lesson *l, int from, int to, int *first_, int *last_)
 {
     int first = -1, last = -1, count = 0;
-    for (int i = l->played[c->stroke[k - 1]].of + 1; i < l->played[c->stroke[k]].of; i++)
+    for (int i = from + 1; i < to; i++)
         if (l->seen[l->asked[i].hand] && l->asked[i].by < 0) {
             first = first < 0 ? i : first;
             last = i;
             count++;
         }
     lesson_fault *f = count < PHRASE ? NULL : lesson_fault_add(l, "skip", count, 0, 0, 0.01);
+    for (int i = first; f && i <= last; i++)
+        l->asked[i].skipped = l->asked[i].by < 0;
+    *first_ = first, *last_ = last;
+    if (f) {
+        lesson_fault_explain(f, 0, "strokes", lesson_none_source);
+        f->threshold = 1;
+    }
+    return f;
+}
+
+// a phrase left out before matched stroke k is named; true if the beat begins again after it
+static bool left_out(lesson *l, const lesson_course *c, int k, bool jumps)
+{
+    int first, last;
+    lesson_fault *f =
+        find_phrase(l, l->played[c->stroke[k - 1]].of, l->played[c->stroke[k]].of, &first, &last);
     if (!f)
         return false;
-    for (int i = first; i <= last; i++)
-        l->asked[i].skipped = l->asked[i].by < 0;
-    snprintf(f->what, sizeof f->what, "You leave out beats %g to %g: %d strokes",
-             l->asked[first].beat, l->asked[last].beat, count);
+    snprintf(f->what, sizeof f->what, "You leave out beats %g to %g: %.0f strokes",
+             l->asked[first].beat, l->asked[last].beat, f->effect);
     snprintf(f->how, sizeof f->how, "%s", jumps ? "played on without them" : "their time passes");
-    lesson_fault_explain(f, 0, "strokes", lesson_none_source);
-    f->threshold = 1;
     return jumps;
+}
+
+// a take that begins late or ends early
+static void find_ends(lesson *l, const lesson_course *c)
+{
+    const int ends[] = {l->played[c->stroke[0]].of, l->played[c->stroke[c->n - 1]].of};
+    for (int late = 0; late < 2; late++) {
+        int first, last;
+        lesson_fault *f =
+            find_phrase(l, late ? ends[1] : -1, late ? l->asked_count : ends[0], &first, &last);
+        if (!f)
+            continue;
+        snprintf(f->what, sizeof f->what,
+                 "The take %s at beat %g: the score's %s %.0f strokes are not in it",
+                 late ? "ends" : "begins", l->asked[ends[late]].beat, late ? "last" : "first",
+                 f->effect);
+        snprintf(f->how, sizeof f->how, "the others are judged");
+    }
 }
 
 /// Waits and jumps: an interval that is too long or too short, and all strokes after it with it.
@@ -258,6 +288,7 @@ bool lesson_course_new(lesson *l, lesson_course *c)
         if (c->asked[i] - c->asked[i - 1] > 0.04)
             c->scratch[count++] = c->asked[i] - c->asked[i - 1];
     c->interval = lesson_median(c->scratch, count);
+    find_ends(l, c);
     find_waits(l, c);
     judge_tempo(l, c);
     find_beat(c);

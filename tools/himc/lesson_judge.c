@@ -16,10 +16,8 @@
 #define SINGLE 4.0 // standard deviations of a single stroke; chosen: 1 of 16000 is further off
 
 // Thresholds of listeners, and where no one has published any, what himc itself counts as right.
-#define JND_LEVEL 1.0 // (dB)
 static const char level_source[] = "chosen: 1 dB; listeners notice 0.4 dB between noises in the "
                                    "laboratory: Miller 1947";
-#define PLACE 0.02 // (m)
 static const char place_source[] =
     "chosen: 20 mm, within which himc counts a stroke as on its spot; no listeners' threshold is "
     "published";
@@ -129,13 +127,28 @@ void lesson_scatter(const lesson *l, double *seconds, double *decibels)
     *decibels = n > 0 ? sqrt(level / n) : NAN;
 }
 
+// "30 mm too far, 12 mm to the left", without what is none
+static void name_place(const difference *d, char *text, size_t size)
+{
+    static const char *const ways[][2] = {{"too near", "too far"}, {"to the right", "to the left"}};
+    double away[] = {fabs(1e3 * d->effect[0]), fabs(1e3 * d->effect[1])};
+    *text = 0;
+    for (int axis = 0; axis < 2; axis++)
+        if (away[axis] >= 0.5)
+            himc_format(text + strlen(text), size - strlen(text), "%s%.0f mm %s", *text ? ", " : "",
+                        away[axis], ways[axis][d->effect[axis] > 0]);
+}
+
 static void tell_group(lesson *l, const quantity *q, difference d)
 {
-    char who[80], others[40] = "the others";
-    if (d.kind == HAND && d.effect[0] > 0 && q->axes == 1) { // the softer hand, the earlier one
+    char who[80], others[40] = "the others", place[64];
+    // the softer hand, the earlier one, the left one
+    if (d.kind == HAND && (q->axes == 1 ? d.effect[0] > 0 : d.id == HIMC_RIGHT)) {
         d.id = !d.id;
-        d.effect[0] = -d.effect[0];
+        for (int axis = 0; axis < q->axes; axis++)
+            d.effect[axis] = -d.effect[axis];
     }
+    name_place(&d, place, sizeof place);
     double shown = q->scale * (q->axes > 1 ? d.size : d.effect[0]);
     lesson_fault *f =
         lesson_fault_add(l, q->kind, shown, q->scale * d.u, LESSON_SURE, q->scale * q->threshold);
@@ -145,13 +158,15 @@ static void tell_group(lesson *l, const quantity *q, difference d)
     if (d.kind == HAND)
         snprintf(others, sizeof others, "the %s hand's", himc_hand_name((himc_hand)!d.id));
     who[0] = 'T';
-    if (q->axes > 1)
-        snprintf(
-            f->what, sizeof f->what,
-            "%s land %.0f mm beside their place (%.0f mm %s, %.0f mm to the %s), measured from %s",
-            who, shown, 1e3 * fabs(d.effect[0]), d.effect[0] > 0 ? "too far" : "too near",
-            1e3 * fabs(d.effect[1]), d.effect[1] > 0 ? "left" : "right", others);
-    else if (d.kind == HAND && strcmp(q->kind, "time") == 0) // who is right is not known
+    if (q->axes > 1 && d.kind == HAND) // who is right is not known, here and in time
+        himc_format(f->what, sizeof f->what,
+                    "The hands' places are %.0f mm apart: the left's, seen from the right's, %s",
+                    shown, place);
+    else if (q->axes > 1)
+        himc_format(f->what, sizeof f->what,
+                    "%s land %.0f mm beside their place (%s), measured from %s", who, shown, place,
+                    others);
+    else if (d.kind == HAND && strcmp(q->kind, "time") == 0)
         snprintf(f->what, sizeof f->what, "The hands are %.1f ms apart: the %s behind the %s",
                  fabs(shown), himc_hand_name((himc_hand)!d.id), himc_hand_name((himc_hand)d.id));
     else
@@ -218,7 +233,7 @@ static void judge_swell(lesson *l, lesson_course *c, int from, int to, bool fall
     lesson_fault *f = slope > -FLAT ? NULL
                                     : lesson_fault_add(l, "level", slope * fabs(rise),
                                                        fabs(rise) * sqrt(rest / (n - 2) / xx),
-                                                       LESSON_SURE, JND_LEVEL);
+                                                       LESSON_SURE, LESSON_JND_LEVEL);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what, "%s %s from beat %g to %g: of %.1f dB you play %.1f dB",
@@ -469,8 +484,8 @@ static void judge_rolls(lesson *l, const lesson_course *c)
 // strokes without a partner
 static void judge_missing(lesson *l)
 {
-    char beats[2][LISTED + ENTRY] = {"", ""};
-    int alone = 0; // missing, but not with a phrase
+    char beats[2][LISTED + 2 * ENTRY] = {"", ""};
+    int alone = 0, listed[2] = {0}; // missing, but not with a phrase
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
         if (a->by >= 0 || !l->seen[a->hand])
@@ -480,7 +495,7 @@ static void judge_missing(lesson *l)
             continue;
         alone++;
         size_t used = strlen(beats[0]);
-        if (used < LISTED)
+        if (used < LISTED && ++listed[0])
             snprintf(beats[0] + used, ENTRY, "%s%s at beat %g", used ? ", " : "",
                      himc_hand_name(a->hand), a->beat);
     }
@@ -490,11 +505,14 @@ static void judge_missing(lesson *l)
             continue;
         l->extra++;
         size_t used = strlen(beats[1]);
-        if (used < LISTED)
+        if (used < LISTED && ++listed[1])
             snprintf(beats[1] + used, ENTRY, "%s%s at %.2f s", used ? ", " : "",
                      himc_hand_name(p->strike.hand), p->strike.time);
     }
     const int count[] = {alone, l->extra};
+    for (int k = 0; k < 2; k++)
+        if (count[k] > listed[k])
+            snprintf(beats[k] + strlen(beats[k]), ENTRY, " and %d more", count[k] - listed[k]);
     for (int k = 0; k < 2; k++) {
         lesson_fault *f = lesson_fault_add(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
         if (!f)
@@ -512,16 +530,18 @@ static void judge_missing(lesson *l)
 static void judge_hands(lesson *l)
 {
     char beats[80] = "";
-    int count = 0;
+    int count = 0, listed = 0;
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
         if (a->by < 0 || l->played[a->by].strike.hand == a->hand)
             continue;
         size_t used = strlen(beats);
-        if (used < sizeof beats - 10)
+        if (used < sizeof beats - 30 && ++listed)
             snprintf(beats + used, sizeof beats - used, "%s%g", used ? ", " : "", a->beat);
         count++;
     }
+    if (count > listed)
+        himc_format(beats + strlen(beats), 20, " and %d more", count - listed);
     lesson_fault *f = lesson_fault_add(l, "hand", count, 0, 0, 0.01);
     if (!f)
         return;
@@ -603,10 +623,11 @@ bool lesson_judge(lesson *l, himc_error *error)
         measure(l, &c);
         find_runs(l);
     }
+    l->jnd = lesson_jnd(c.interval);
     const quantity quantities[] = {
-        {"time", "ms", "later", "earlier", lesson_time_source, 1, 1e3, lesson_jnd(c.interval)},
-        {"level", "dB", "louder", "softer", level_source, 1, 1, JND_LEVEL},
-        {"spot", "mm", "", "", place_source, 2, 1e3, PLACE}};
+        {"time", "ms", "later", "earlier", lesson_time_source, 1, 1e3, l->jnd},
+        {"level", "dB", "louder", "softer", level_source, 1, 1, LESSON_JND_LEVEL},
+        {"spot", "mm", "", "", place_source, 2, 1e3, LESSON_PLACE}};
     for (int q = 0; q < 3 && good; q++) {
         for (int k = 0; k < c.n; k++) {
             const lesson_played *p = &l->played[c.stroke[k]];

@@ -25,6 +25,7 @@
 #define GAP 6.0
 #define JUMP 20.0
 #define MORE 1.2
+#define ENDS 18.0 // in place of JUMP: a take begins late or ends early rather than it leaps
 #define EXCHANGED 8.0
 #define ROLLED 0.02 // for a played event within a roll
 #define OTHER 3.0
@@ -80,7 +81,7 @@ static cell *at(const table *t, int i, int j)
 // of so many events left out at one end
 static double beside(int count)
 {
-    return fmin(GAP * count, JUMP + MORE * count);
+    return fmin(GAP * count, ENDS + MORE * count);
 }
 
 // how many played events from `low` on, before `high`, are earlier than that
@@ -355,7 +356,9 @@ bool lesson_match(lesson *l, himc_error *error)
         l->due += l->seen[l->asked[k].hand];
     // chosen: with fewer no figure could be trusted
     return (l->matched >= 3 && 2 * l->matched >= l->due) ||
-           himc_error_set(error,
-                          "%s does not match %s: %d of %d strokes found, expected 3 and half",
-                          l->take, l->score, l->matched, l->due);
+           himc_error_set(
+               error,
+               "%s does not match %s: %d of %d strokes found, expected at least 3 and at "
+               "least half of them",
+               l->take, l->score, l->matched, l->due);
 }

@@ -6,6 +6,7 @@
 
 #include "cli.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -116,6 +117,11 @@ static void put_head(const lesson *l, FILE *out)
                     himc_hand_name((himc_hand)h));
 }
 
+static void put_sentence(const char *text, bool goes_on, FILE *out)
+{
+    fprintf(out, "%c%s. ", goes_on ? *text : toupper(*text), text + 1);
+}
+
 static void put_faults(const lesson *l, FILE *out)
 {
     fputs("</p><h2>Practise first</h2><ol>", out);
@@ -123,10 +129,13 @@ static void put_faults(const lesson *l, FILE *out)
         const lesson_fault *f = &l->fault[k];
         fputs("<li><b>", out);
         put_text(out, f->what);
-        fprintf(
-            out,
-            ".</b><br><small>%.1f ± %.1f %s (95 %%), your own spread %.1f, threshold %.1f: %s. %s.</small>",
-            fabs(f->effect), SURE * f->u, f->unit, f->spread, f->threshold, f->source, f->how);
+        fputs(".</b><br><small>", out);
+        if (f->u > 0) // else a count
+            fprintf(out, "%.1f ± %.1f %s (95 %%), your own spread %.1f, threshold %.1f: ",
+                    fabs(f->effect), SURE * f->u, f->unit, f->spread, f->threshold);
+        put_sentence(f->source, f->u > 0, out);
+        put_sentence(f->how, false, out);
+        fputs("</small>", out);
         fputs("</li>\n", out);
     }
     fputs("</ol>", out);
@@ -142,10 +151,11 @@ static void put_faults(const lesson *l, FILE *out)
     double seconds, decibels;
     lesson_scatter(l, &seconds, &decibels);
     if (!l->faults)
-        fputs(
+        fprintf(
+            out,
             "<p><b>Nothing stands out.</b> No difference is both beyond your own spread and beyond "
-            "its threshold.</p>",
-            out);
+            "its threshold: %.1f ms in this tempo, %g dB, %g mm.</p>",
+            1e3 * l->jnd, LESSON_JND_LEVEL, 1e3 * LESSON_PLACE);
     fprintf(out,
             "<p>Your strokes lie %.1f ms off your own beat and %.1f dB off the written dynamics "
             "(RMS). The more they scatter, the larger a difference must be to be named.</p>",
@@ -223,7 +233,7 @@ static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FI
            scale = (WIDE - LEFT - 8) / fmax(l->length, 1e-3);
     for (int k = 0; k < l->count; k++) // both hands have one scale
         most = fmax(most, 1.1 * fabs(time ? 1e3 * l->played[k].off : l->played[k].level));
-    double up = (middle - 8) / most;
+    double up = (middle - 8) / most, mean = 0, n = 0;
     fprintf(out, "<svg viewBox='0 0 %g %g'><rect x=%g y=%.1f width=%g height=%.1f fill='#e6f4e6'/>",
             WIDE, HIGH, LEFT, middle - band * up, WIDE - LEFT, 2 * band * up);
     fprintf(out,
@@ -240,22 +250,31 @@ static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FI
         fprintf(out, "<path d='M%.1f %.1fV%.1f' stroke='#999'/>", x, middle - (y + u) * up,
                 middle - (y - u) * up);
         put_mark(out, x, middle - y * up, 2.5, hand, "");
+        mean += (y - mean) / ++n;
     }
+    fprintf(out, "<path d='M%g %.1fH%g' stroke='#888' stroke-dasharray=4 />", LEFT,
+            middle - mean * up, WIDE);
     fputs("</svg>\n", out);
 }
 
 static void put_plots(const lesson *l, FILE *out)
 {
     static const char *const heads[] = {
-        "<h2>Timing</h2><p><small>Against the beat of your own tempo. Green: within 6 ms, the smallest "
-        "shift that listeners notice. Bars: standard uncertainty by the camera.</small></p>",
-        "<h2>Loudness</h2><p><small>By impact speed, against the score's dynamic, less your mean. Green: "
-        "within 1 dB. Bars: standard uncertainty by the camera.</small></p>"};
+        "Timing</h2><p><small>Against the beat of your own tempo",
+        "Loudness</h2><p><small>By impact speed, against the score's "
+        "dynamic, less your mean"};
+    const double band[] = {1e3 * l->jnd, LESSON_JND_LEVEL};
     for (int what = 0; what < 2; what++) {
-        fprintf(out, "%s<div class=g>", heads[what]);
+        fprintf(
+            out,
+            "<h2>%s. Green: within the threshold, %.1f %s%s. Dashed: the hand's mean; hands whose "
+            "means are further apart than that are named. Bars: standard uncertainty by the "
+            "camera.</small></p><div class=g>",
+            heads[what], band[what], what ? "dB" : "ms",
+            what ? "" : " (listeners notice 6 ms, or 2.5 % of longer intervals)");
         for (int h = 0; h < HIMC_HANDS; h++)
             if (l->seen[h])
-                put_plot(l, (himc_hand)h, what == 0, what == 0 ? 6 : 1, out);
+                put_plot(l, (himc_hand)h, what == 0, band[what], out);
         fputs("</div>", out);
     }
 }
