@@ -243,6 +243,58 @@ def test_rows_at_uneven_times_are_told_as_at_even_ones():
         assert abs(told["faults"][0]["effect"] - even["faults"][0]["effect"]) < 0.1 and ("rows are up to" in noted) == (kind == "wait"), (told, even, noted)
 
 
+def page():
+    with open(path("page.html")) as file:
+        return file.read()
+
+
+def test_the_picture_shows_the_threshold_of_the_verdict():
+    rows, interval = model_motion(), 60 / 90
+    times = [row[0] for row in rows]
+    for late in (0.012, 0.025):  # of the left hand; below and above 2.5 % of the interval
+        left = at_times(rows, [t - late for t in times])
+        told, _ = told_of([[t] + a[1:4] + b[4:] for t, a, b in zip(times, left, rows)])
+        band = float(re.search(r"Green: within the threshold, ([0-9.]+) ms", page())[1])
+        assert abs(band - 25 * interval) < 0.1, band
+        assert len(told["faults"]) == (late > band / 1e3), told
+        for fault in told["faults"]:
+            assert abs(fault["threshold"] - band) < 0.1 and abs(abs(fault["effect"]) - 1e3 * late) < 1, fault
+        drawn, most = re.search(r"height=([0-9.]+) fill='#e6f4e6'.*?<text y=10>([0-9]+) ms early", page(), re.S).groups()
+        assert abs(float(drawn) * float(most) / (2 * (110 / 2 - 8)) - band) < 0.04 * band, (drawn, most)
+        middle = [float(y) for y in re.findall(r"M34 ([0-9.]+)H360' stroke='#888' stroke-dasharray", page())][:2]
+        assert (middle[0] - middle[1] > float(drawn) / 2) == (len(told["faults"]) > 0), (middle, drawn)
+
+
+def test_no_hand_is_blamed_for_the_distance_of_both():
+    rows = model_motion()
+    told = [told_of([row[:1] + [x + d for x, d in zip(row[1:], move)] for row in rows])[0]["faults"] for move in ((0.03, 0, 0, 0, 0, 0), (0, 0, 0, -0.03, 0, 0))]
+    for faults in told:
+        assert [f["kind"] for f in faults] == ["spot"] and abs(faults[0]["effect"] - 30) < 2, faults
+        assert "hands' places are 30 mm apart" in faults[0]["what"] and "30 mm too far" in faults[0]["what"], faults
+    assert told[0][0]["what"] == told[1][0]["what"], told
+
+
+def test_a_cut_take_is_told_once():
+    rows, beat = model_motion(), 60 / 90
+    first = next(row[0] for low, row in zip(rows[1:], rows) if row[6] < 0.87 and low[6] > row[6] or row[3] < 0.87 and low[3] > row[3])
+    for told, text in ((told_of([r for r in rows if r[0] < first + 14.5 * beat])[0], "ends at beat 15: the score's last 7"),
+                       (told_of([r for r in rows if r[0] > first + 6.5 * beat])[0], "begins at beat 8: the score's first 7")):
+        assert told["missing"] == 7 and len(told["faults"]) == 1 and text in told["faults"][0]["what"], told
+        assert "±" not in re.search("<li>(.*?)</li>", page())[1]
+
+
+def test_a_long_list_says_how_many_more():
+    rows, beat = model_motion(), 60 / 90
+    lost = (1, 5, 7, 11, 13, 17, 19)  # right strokes that stay above the head
+    lifted = []
+    for row in rows:
+        lift = max(0.5 + 0.5 * math.cos(math.pi * max(-1, min(1, (row[0] - beat * (1 + k)) / 0.3))) for k in lost)
+        lifted.append(row[:6] + [row[6] + 0.15 * lift])
+    told, _ = told_of(lifted)
+    what = told["faults"][0]["what"]
+    assert told["missing"] == 7 and what.startswith("7 strokes missing: ") and what.count("at beat") + int(re.search("and ([0-9]+) more$", what)[1]) == 7, told
+
+
 def test_the_models_own_rolls_are_told_no_fault():
     for between in (1, 2, 5):
         closed = lesson_takes.rolls(between, 6)[0]
