@@ -12,6 +12,8 @@
 #include "fit_drum.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #define LOWER 0.87 // tunings this far beyond the usual ones are tried
 #define HIGHER 1.15
@@ -66,8 +68,14 @@ static const struct {
 #define DECAYS_TRIED 49
 #define TRIED_MOST (2 * FINE + 1) // of tunings and decays
 #define DECAY_STEP 0.05           // (ln)
-#define LOSSES_MOST 3.0           // in units of the usual ones
+#define LOSSES_MOST 3.0           // in units of those that they begin at
 #define LOSSES_STEP 0.025
+#define BEGIN_LEAST 0.1     // losses begin at so much of the usual ones ...
+#define BEGIN_MOST 32.0     // ... up to so much ...
+#define BEGIN_STEP 1.15     // ... in such steps ...
+#define BEGIN_NEAR 2.0      // ... (ln) less likely so far from the usual ones
+#define BEGIN_WITHIN 0.1    // (ln) of a found decay; chosen
+#define BEGIN_USUAL 0.7     // the usual ones, if they explain so much of what the best do
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -213,6 +221,11 @@ typedef struct ringing {
     double frequency, apart, air, load, due;
 } ringing;
 
+static double lost(const fit_drum *d, double frequency)
+{
+    return d->constant + d->square * pow(2 * HIMC_PI * frequency, 2);
+}
+
 static int find_ringing(double room, const fit_drum *d, ringing out[PAIRS], himc_error *error)
 {
     fit_mode none[FIT_MODES], one[FIT_MODES];
@@ -228,8 +241,7 @@ static int find_ringing(double room, const fit_drum *d, ringing out[PAIRS], himc
             ringing r;
             r.air = pair_of(none, count, m, n, &r.frequency, &r.apart);
             r.load = pair_of(one, count, m, n, &r.frequency, &r.apart) - r.air;
-            r.due = r.air + r.load * (FIT_USUAL_CONSTANT +
-                                      FIT_USUAL_SQUARE * pow(2 * HIMC_PI * r.frequency, 2));
+            r.due = r.air + r.load * lost(d, r.frequency);
             if (r.air > 0 && log(1000) / r.due > LONGER * room)
                 out[kept++] = r;
         }
@@ -295,7 +307,48 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
     return true;
 }
 
-// S0 and S1, in units of the usual ones, at which the decays of those pairs are likeliest; drawn to
+// how far the decays found near the pairs are a drum's
+static double begun(const partials_list *partials, const ringing *pair, int count,
+                    const fit_drum *d)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const ringing *r = &pair[i];
+        double t60 = log(1000) / (r->air + r->load * lost(d, r->frequency));
+        for (int k = 0; k < partials->count; k++) {
+            const partial *p = &partials->row[k];
+            if (fabs(p->frequency - r->frequency) > fmax(CLOSE * r->frequency, r->apart))
+                continue;
+            double part = p->t60_error / p->t60 / BEGIN_WITHIN;
+            double wrong = log(p->t60 / t60) / BEGIN_WITHIN;
+            sum += worth(p) / (1 + part * part) / (1 + wrong * wrong);
+        }
+    }
+    double s0 = log(d->constant / FIT_USUAL_CONSTANT), s1 = log(d->square / FIT_USUAL_SQUARE);
+    return sum * exp(-(s0 * s0 + s1 * s1) / (2 * BEGIN_NEAR * BEGIN_NEAR));
+}
+
+// the losses at which the search begins: the usual ones, unless the partials found ring otherwise
+static bool begin_losses(const partials_list *partials, fit_drum *d, himc_error *error)
+{
+    ringing pair[PAIRS];
+    int count = find_ringing(0, d, pair, error);
+    double usual = begun(partials, pair, count, d), best = 0;
+    fit_drum begin = *d, tried = *d;
+    for (double s0 = BEGIN_LEAST; s0 < BEGIN_MOST; s0 *= BEGIN_STEP)
+        for (double s1 = BEGIN_LEAST; s1 < BEGIN_MOST; s1 *= BEGIN_STEP) {
+            tried.constant = s0 * FIT_USUAL_CONSTANT, tried.square = s1 * FIT_USUAL_SQUARE;
+            double here = begun(partials, pair, count, &tried);
+            if (here > best)
+                best = here, begin = tried;
+        }
+    if (usual < BEGIN_USUAL * best)
+        *d = begin;
+    if (getenv("DBG")) fprintf(stderr, "%g in %g room %.2f begin %.2f %.2f (%.2f, %.2f)\n", d->inches, d->tune, partials->room, d->constant/.3,d->square/5e-8, usual, best);
+    return count > 0;
+}
+
+// S0 and S1, in units of those they begin at, at which the decays of those pairs are likeliest; drawn to
 // the usual ones as if each were known within a part of itself.
 static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
                         himc_error *error)
@@ -325,9 +378,8 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
         for (double s1 = 0; s1 < LOSSES_MOST; s1 += LOSSES_STEP) {
             double sum = -0.5 * (pow((s0 - 1) / USUAL_WITHIN, 2) + pow((s1 - 1) / USUAL_WITHIN, 2));
             for (int i = 0; i < count; i++) {
-                double lost = s0 * FIT_USUAL_CONSTANT +
-                              s1 * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * pair[i].frequency, 2);
-                double k = log((pair[i].air + pair[i].load * lost) / pair[i].due) / DECAY_STEP +
+                double due = pair[i].air + pair[i].load * lost(&(fit_drum){.constant=s0 * d->constant, .square=s1 * d->square}, pair[i].frequency);
+                double k = log(due / pair[i].due) / DECAY_STEP +
                            DECAYS_TRIED / 2;
                 int low = (int)fmin(fmax(k, 0), DECAYS_TRIED - 2);
                 sum += likely[i][low] + (k - low) * (likely[i][low + 1] - likely[i][low]);
@@ -335,8 +387,8 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
             if (sum > best)
                 best = sum, at[0] = s0, at[1] = s1;
         }
-    d->constant = FIT_USUAL_CONSTANT * at[0];
-    d->square = FIT_USUAL_SQUARE * at[1];
+    d->constant *= at[0];
+    d->square *= at[1];
     return count >= 0;
 }
 
@@ -429,6 +481,7 @@ int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
         count--;
     for (int i = 0; i < count; i++)
         if (!find_tuning(sound, partials->room, &choice[i], error) ||
+            !begin_losses(partials, &choice[i], error) ||
             !find_losses(sound, partials, &choice[i], error))
             return 0;
     return count;
