@@ -24,12 +24,17 @@
 #define UNKNOWN (-170.0)       // (dB) digital silence before the stroke, or nothing
 #define LEAST_SCORE 10.0       // of a drum (dB) ...
 #define MOST_APART 5.5         // ... and of its blow's spectrum (dB); chosen: bars have 8 and more
-#define LAWFUL 1.5       // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
-#define UNLIKE 0.1       // (dB) two mallets differ by this ...
-#define UNLIKE_PART 0.15 // ... and per distance, or they are not told apart; chosen
-#define ALIKE 0.003      // per frequency: so near it is
-#define SURE 6.0         // (dB) clear of the others
-#define STEADY 0.2       // (Hz)
+#define LAWFUL 1.5        // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
+#define UNLIKE 0.1        // (dB) two mallets differ by this ...
+#define UNLIKE_PART 0.15  // ... and per distance, or they are not told apart; chosen
+#define ALIKE 0.003       // per frequency: so near it is
+#define SURE 6.0          // (dB) clear of the others
+#define STEADY 0.2        // (Hz)
+#define CENTS 5.0         // a principal so far from the recorded one is told
+#define DECAYS_APART 0.26 // of ln T60, 30 %: told ...
+#define CERTAIN 0.15      // ... of a T60 known within this part of it ...
+#define LOUD 40.0         // (dB) below the loudest a partial is not certain
+#define HELD_UP 2.0       // ... and longer than the room's by this, if it is longer than made
 
 enum { OUT, INSTRUMENT, JSON };
 
@@ -160,6 +165,49 @@ static bool find_drum(fit *f, const char *kind, himc_error *error)
     return !f->list || partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
 }
 
+// known well, as loud as others, and not held up by the room
+static bool is_certain(const fit *f, const partial *p, double made, double loudest)
+{
+    return p->clear > SURE && p->frequency_error < STEADY && p->t60_error < CERTAIN * p->t60 &&
+           p->energy > loudest - LOUD && (p->t60 < made || p->t60 > HELD_UP * f->found.room);
+}
+
+// says where the partials of a drum that are certain are not as recorded
+static bool say_apart(const fit *f, himc_error *error)
+{
+    fit_mode modes[FIT_MODES];
+    const fit_drum *d = &f->drum;
+    int count = fit_drum_modes(d, modes, error);
+    double most = DECAYS_APART, loudest = -INFINITY, rings = 0, made = 0, at = 0, where = 0,
+           off = INFINITY;
+    for (int i = 0; i < f->found.count; i++)
+        loudest = fmax(loudest, f->found.row[i].energy);
+    for (int i = 0; i < count; i++)
+        for (int k = 2 * (modes[i].m - 1); k >= 0 && k < 2 * modes[i].m && k < 2 * FIT_ORDERS;
+             k++) {
+            const partial *p = d->of[k] < 0 ? NULL : &f->found.row[d->of[k]];
+            if (modes[i].n != 1 || !p || !is_certain(f, p, modes[i].t60, loudest))
+                continue;
+            double cents = 1200 * log2(modes[i].frequency / p->frequency);
+            if (modes[i].m == 1 && p->t60 > HELD_UP * f->found.room && fabs(cents) < fabs(off))
+                off = cents, at = p->frequency;
+            double apart = fabs(log(p->t60 / modes[i].t60));
+            if (apart > most)
+                most = apart, rings = p->t60, made = modes[i].t60, where = p->frequency;
+        }
+    if (isfinite(off) && fabs(off) > CENTS)
+        cli_say("note: (1,1) sounds at %.2f Hz, made %+.0f cents from it\n", at, off);
+    if (made > 0)
+        cli_say("note: %.0f Hz rings %.2f s, made %.2f s\n", where, rings, made);
+    if (d->strange)
+        cli_say("note: tuned by (1,1): no drum of %g inches has the other partials there\n",
+                d->inches);
+    if (d->hidden)
+        cli_say("note: the room rings longer than the drum: losses and tuning are uncertain, "
+                "expected a drier recording\n");
+    return count > 0;
+}
+
 static bool work(fit *f, const cli_arguments *a, himc_error *error)
 {
     const char *kind = a->value[INSTRUMENT], *out = a->value[OUT];
@@ -192,7 +240,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
                              "makes the nearest)\n"
                            : "note: no timpano found: a list of modes (--instrument timpano makes "
                              "the nearest)\n");
-    return true;
+    return f->list || say_apart(f, error);
 }
 
 // two mallets whose blows are as near, beside how near they are, are not told apart

@@ -12,8 +12,6 @@
 #include "fit_drum.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #define LOWER 0.87 // tunings this far beyond the usual ones are tried
 #define HIGHER 1.15
@@ -63,6 +61,11 @@ static const struct {
 #define STRANGE 0.05         // part of pairs that tell something else; chosen
 #define SUREST 0.03          // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
 #define HELD 0.2             // ... and, in a room that outlasts it, so much more
+#define ALONE_STEP 0.0002    // per frequency: in such steps one pair is looked for ...
+#define ALONE_TRIED 301      // ... alone, 3 % either way
+#define ALONE_CLEAR 60.0     // (ln) chosen: in a room that hides it 40, else 100 and more ...
+#define ALONE_GAIN 20.0      // ... and likelier there by so much ...
+#define ALONE_APART 0.0029   // ... and 5 cents away
 #define MISTUNED 5           // a pair of an uneven head is beside its place; tried ...
 #define MISTUNED_STEP 0.0001 // ... per frequency
 #define DECAYS_TRIED 49
@@ -70,12 +73,14 @@ static const struct {
 #define DECAY_STEP 0.05           // (ln)
 #define LOSSES_MOST 3.0           // in units of those that they begin at
 #define LOSSES_STEP 0.025
-#define BEGIN_LEAST 0.1     // losses begin at so much of the usual ones ...
-#define BEGIN_MOST 32.0     // ... up to so much ...
-#define BEGIN_STEP 1.15     // ... in such steps ...
-#define BEGIN_NEAR 2.0      // ... (ln) less likely so far from the usual ones
-#define BEGIN_WITHIN 0.1    // (ln) of a found decay; chosen
-#define BEGIN_USUAL 0.7     // the usual ones, if they explain so much of what the best do
+#define BEGIN_LEAST 0.1   // losses begin at so much of the usual ones ...
+#define BEGIN_MOST 32.0   // ... up to so much ...
+#define BEGIN_STEP 1.15   // ... in such steps ...
+#define BEGIN_NEAR 2.0    // ... (ln) less likely so far from the usual ones
+#define BEGIN_WITHIN 0.1  // (ln) of a found decay; chosen
+#define BEGIN_SURE 5.0    // (dB of partials) less, and the room hides how they ring ...
+#define HIDDEN_WITHIN 0.5 // ... so that losses are as likely farther from where they begin
+#define BEGIN_USUAL 0.7   // the usual ones, if they explain so much of what the best do
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -307,6 +312,51 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
     return true;
 }
 
+// per frequency: how far from there a pair is by itself, if that is clear; or 0
+static bool place(const partials_sound *sound, double room, const ringing *r, double *apart,
+                  himc_error *error)
+{
+    double likely[ALONE_TRIED], shift[ALONE_TRIED];
+    int middle = ALONE_TRIED / 2, best = middle;
+    for (int k = 0; k < ALONE_TRIED; k++)
+        shift[k] = ALONE_STEP * (k - middle) * r->frequency;
+    if (!partials_likely(sound, room > 0 ? PARTIALS_LATE : PARTIALS_EARLY, room, r->frequency,
+                         r->apart, shift, ALONE_TRIED, &r->due, 1, likely, error))
+        return false;
+    for (int k = 0; k < ALONE_TRIED; k++)
+        best = likely[k] > likely[best] ? k : best;
+    bool clear = likely[best] > ALONE_CLEAR && likely[best] > likely[middle] + ALONE_GAIN;
+    *apart = clear ? ALONE_STEP * (best - middle) : 0;
+    return true;
+}
+
+// The principal is what players tune. Where it is not where all pairs together say, the drum has
+// not quite this one's ratios, and is tuned by it alone.
+static bool tune_principal(const partials_sound *sound, double room, fit_drum *d, himc_error *error)
+{
+    ringing pair[PAIRS];
+    double apart = 0;
+    if (find_ringing(0, d, pair, error) < 1 || !place(sound, room, &pair[0], &apart, error))
+        return false;
+    d->strange = fabs(apart) > ALONE_APART;
+    d->tune *= d->strange ? 1 + apart : 1;
+    return true;
+}
+
+// the pairs that outlast the room, each where it is
+static int find_placed(const partials_sound *sound, double outlast, double room, const fit_drum *d,
+                       ringing pair[PAIRS], himc_error *error)
+{
+    int count = find_ringing(outlast, d, pair, error);
+    for (int i = 0; d->strange && i < count; i++) {
+        double apart;
+        if (!place(sound, room, &pair[i], &apart, error))
+            return -1;
+        pair[i].frequency *= 1 + apart;
+    }
+    return count;
+}
+
 // how far the decays found near the pairs are a drum's
 static double begun(const partials_list *partials, const ringing *pair, int count,
                     const fit_drum *d)
@@ -329,10 +379,11 @@ static double begun(const partials_list *partials, const ringing *pair, int coun
 }
 
 // the losses at which the search begins: the usual ones, unless the partials found ring otherwise
-static bool begin_losses(const partials_list *partials, fit_drum *d, himc_error *error)
+static bool begin_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+                         himc_error *error)
 {
     ringing pair[PAIRS];
-    int count = find_ringing(0, d, pair, error);
+    int count = find_placed(sound, 0, partials->room, d, pair, error);
     double usual = begun(partials, pair, count, d), best = 0;
     fit_drum begin = *d, tried = *d;
     for (double s0 = BEGIN_LEAST; s0 < BEGIN_MOST; s0 *= BEGIN_STEP)
@@ -344,43 +395,46 @@ static bool begin_losses(const partials_list *partials, fit_drum *d, himc_error 
         }
     if (usual < BEGIN_USUAL * best)
         *d = begin;
-    if (getenv("DBG")) fprintf(stderr, "%g in %g room %.2f begin %.2f %.2f (%.2f, %.2f)\n", d->inches, d->tune, partials->room, d->constant/.3,d->square/5e-8, usual, best);
+    d->hidden = usual < BEGIN_USUAL * best && best < BEGIN_SURE;
     return count > 0;
 }
 
 // S0 and S1, in units of those they begin at, at which the decays of those pairs are likeliest; drawn to
 // the usual ones as if each were known within a part of itself.
-static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+static bool find_losses(const partials_sound *sound, double room, double outlast, fit_drum *d,
                         himc_error *error)
 {
     ringing pair[PAIRS];
     double likely[PAIRS][DECAYS_TRIED], decay[DECAYS_TRIED], best = -INFINITY, at[2] = {1, 1};
     double each[MISTUNED][DECAYS_TRIED], shift[MISTUNED];
-    int count = find_ringing(partials->room, d, pair, error);
+    double within = outlast > 0 || room == 0 ? USUAL_WITHIN : HIDDEN_WITHIN;
+    int count = find_placed(sound, outlast, room, d, pair, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
         for (int j = 0; j < MISTUNED; j++)
             shift[j] = MISTUNED_STEP * (j - MISTUNED / 2) * pair[i].frequency;
-        if (!partials_likely(sound, partials->room > 0 ? PARTIALS_LAST : PARTIALS_EARLY,
-                             partials->room, pair[i].frequency, pair[i].apart, shift, MISTUNED,
-                             decay, DECAYS_TRIED, each[0], error))
+        if (!partials_likely(sound, outlast > 0 ? PARTIALS_LAST : PARTIALS_EARLY, outlast,
+                             pair[i].frequency, pair[i].apart, shift, MISTUNED, decay, DECAYS_TRIED,
+                             each[0], error))
             return false;
         for (int k = 0; k < DECAYS_TRIED; k++) {
             likely[i][k] = -INFINITY;
             for (int j = 0; j < MISTUNED; j++)
                 likely[i][k] = fmax(likely[i][k], each[j][k]);
         }
-        double held = partials->room * pair[i].due / log(1000); // by the room
+        double held = outlast * pair[i].due / log(1000); // by the room
         blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);
     }
     for (double s0 = 0; s0 < LOSSES_MOST; s0 += LOSSES_STEP)
         for (double s1 = 0; s1 < LOSSES_MOST; s1 += LOSSES_STEP) {
-            double sum = -0.5 * (pow((s0 - 1) / USUAL_WITHIN, 2) + pow((s1 - 1) / USUAL_WITHIN, 2));
+            double sum = -0.5 * (pow((s0 - 1) / within, 2) + pow((s1 - 1) / within, 2));
             for (int i = 0; i < count; i++) {
-                double due = pair[i].air + pair[i].load * lost(&(fit_drum){.constant=s0 * d->constant, .square=s1 * d->square}, pair[i].frequency);
-                double k = log(due / pair[i].due) / DECAY_STEP +
-                           DECAYS_TRIED / 2;
+                double due =
+                    pair[i].air + pair[i].load * lost(&(fit_drum){.constant = s0 * d->constant,
+                                                                  .square = s1 * d->square},
+                                                      pair[i].frequency);
+                double k = log(due / pair[i].due) / DECAY_STEP + DECAYS_TRIED / 2;
                 int low = (int)fmin(fmax(k, 0), DECAYS_TRIED - 2);
                 sum += likely[i][low] + (k - low) * (likely[i][low + 1] - likely[i][low]);
             }
@@ -479,11 +533,19 @@ int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
     }
     while (count > 0 && choice[count - 1].score < choice[0].score - UNLIKELY)
         count--;
-    for (int i = 0; i < count; i++)
-        if (!find_tuning(sound, partials->room, &choice[i], error) ||
-            !begin_losses(partials, &choice[i], error) ||
-            !find_losses(sound, partials, &choice[i], error))
+    for (int i = 0; i < count; i++) {
+        fit_drum *d = &choice[i];
+        double room = partials->room;
+        fit_mode modes[FIT_MODES];
+        if (!find_tuning(sound, room, d, error) || !tune_principal(sound, room, d, error) ||
+            !begin_losses(sound, partials, d, error) ||
+            !find_losses(sound, room, d->hidden ? 0 : room, d, error))
             return 0;
+        int found = fit_drum_modes(d, modes, error);
+        if (found == 0)
+            return 0;
+        assign(partials, modes, found, d);
+    }
     return count;
 }
 
