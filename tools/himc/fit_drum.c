@@ -80,7 +80,7 @@ static const struct {
 #define BEGIN_WITHIN 0.1  // (ln) of a found decay; chosen
 #define BEGIN_SURE 5.0    // (dB of partials) less, and the room hides how they ring ...
 #define HIDDEN_WITHIN 0.5 // ... so that losses are as likely farther from where they begin
-#define BEGIN_USUAL 0.7   // the usual ones, if they explain so much of what the best do
+#define BEGIN_USUAL 0.25  // the usual ones, if they explain so much of what the best do
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
