@@ -233,7 +233,7 @@ static bool say_apart(const fit *f, himc_error *error)
                 d->inches);
     if (d->hidden)
         cli_say("note: the room rings longer than the drum: losses and tuning are uncertain, "
-                "expected a drier recording\n");
+                "expected a drier or longer one\n");
     return count > 0;
 }
 

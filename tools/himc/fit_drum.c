@@ -73,14 +73,16 @@ static const struct {
 #define DECAY_STEP 0.05           // (ln)
 #define LOSSES_MOST 3.0           // in units of those that they begin at
 #define LOSSES_STEP 0.025
-#define BEGIN_LEAST 0.1   // losses begin at so much of the usual ones ...
-#define BEGIN_MOST 32.0   // ... up to so much ...
-#define BEGIN_STEP 1.15   // ... in such steps ...
-#define BEGIN_NEAR 2.0    // ... (ln) less likely so far from the usual ones
-#define BEGIN_WITHIN 0.1  // (ln) of a found decay; chosen
-#define BEGIN_SURE 5.0    // (dB of partials) less, and the room hides how they ring ...
-#define HIDDEN_WITHIN 0.5 // ... so that losses are as likely farther from where they begin
-#define BEGIN_USUAL 0.25  // the usual ones, if they explain so much of what the best do
+#define BEGIN_LEAST 0.1     // losses begin at so much of the usual ones ...
+#define BEGIN_MOST 32.0     // ... up to so much ...
+#define BEGIN_STEP 1.15     // ... in such steps ...
+#define BEGIN_NEAR 2.0      // ... (ln) less likely so far from the usual ones
+#define BEGIN_WITHIN 0.1    // (ln) of a found decay; chosen
+#define BEGIN_SURE 5.0      // (dB of partials) less, and the room hides how they ring ...
+#define HIDDEN_WITHIN 0.5   // ... so that losses are as likely farther from where they begin
+#define BEGIN_FAR 0.6       // (ln of S0) those are far from the usual ones
+#define BEGIN_USUAL_FAR 0.6 // the usual ones, if they explain so much of what such do, or ...
+#define BEGIN_USUAL 0.25    // the usual ones, if they explain so much of what the best do
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -316,15 +318,18 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
 static bool place(const partials_sound *sound, double room, const ringing *r, double *apart,
                   himc_error *error)
 {
-    double likely[ALONE_TRIED], shift[ALONE_TRIED];
+    double likely[ALONE_TRIED] = {0}, shift[ALONE_TRIED];
     int middle = ALONE_TRIED / 2, best = middle;
     for (int k = 0; k < ALONE_TRIED; k++)
         shift[k] = ALONE_STEP * (k - middle) * r->frequency;
-    if (!partials_likely(sound, room > 0 ? PARTIALS_LATE : PARTIALS_EARLY, room, r->frequency,
-                         r->apart, shift, ALONE_TRIED, &r->due, 1, likely, error))
-        return false;
-    for (int k = 0; k < ALONE_TRIED; k++)
-        best = likely[k] > likely[best] ? k : best;
+    // a short recording has nothing late: all 0
+    for (int late = room > 0 ? 1 : 0; late >= 0 && likely[best] == 0; late--) {
+        if (!partials_likely(sound, late ? PARTIALS_LATE : PARTIALS_EARLY, late ? room : 0,
+                             r->frequency, r->apart, shift, ALONE_TRIED, &r->due, 1, likely, error))
+            return false;
+        for (int k = 0; k < ALONE_TRIED; k++)
+            best = likely[k] > likely[best] ? k : best;
+    }
     bool clear = likely[best] > ALONE_CLEAR && likely[best] > likely[middle] + ALONE_GAIN;
     *apart = clear ? ALONE_STEP * (best - middle) : 0;
     return true;
@@ -393,14 +398,17 @@ static bool begin_losses(const partials_sound *sound, const partials_list *parti
             if (here > best)
                 best = here, begin = tried;
         }
-    if (usual < BEGIN_USUAL * best)
+    bool sure = best > BEGIN_SURE;
+    bool far = sure && fabs(log(begin.constant / FIT_USUAL_CONSTANT)) > BEGIN_FAR;
+    if (usual < (far ? BEGIN_USUAL_FAR : BEGIN_USUAL) * best) {
         *d = begin;
-    d->hidden = usual < BEGIN_USUAL * best && best < BEGIN_SURE;
+        d->hidden = !sure;
+    }
     return count > 0;
 }
 
-// S0 and S1, in units of those they begin at, at which the decays of those pairs are likeliest; drawn to
-// the usual ones as if each were known within a part of itself.
+// S0 and S1, in units of those they begin at, at which the decays of those pairs are likeliest;
+// drawn to these as if each were known within a part of itself. `outlast` 0: by the early sound.
 static bool find_losses(const partials_sound *sound, double room, double outlast, fit_drum *d,
                         himc_error *error)
 {
