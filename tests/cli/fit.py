@@ -125,6 +125,69 @@ def test_drums_are_found_again():
     return said
 
 
+def struck(name, inches, words):
+    """a stroke on a drum as the performer hears it"""
+    score = write_text(name + ".txt", f"drum d {inches};\n{words}\ntempo 60;\nstroke 1 right legato mf;\n")
+    good("render", score, "-o", path(name + ".wav"))
+    return score, path(name + ".wav")
+
+
+def fitted(sound):
+    done = himc("fit", sound, "-o", path("own.txt"))
+    assert done.returncode == 0, done.stderr
+    return done.stderr, modes(path("own.txt"))
+
+
+def test_a_drum_rings_as_recorded():
+    """with losses far from the usual ones: (1,1) .. (5,1) within 15 %, in a room that rings shorter or none"""
+    said = []
+    for words in ("room 0; d tune A2; d decay 1;", "room 0; d tune A2; d decay 3;", "d tune A2; d decay 6;", "room 0; d tune A2; d skin calf;"):
+        score, sound = struck("losses", 26, words)
+        made, true = fitted(sound)[1], modes(score)
+        said.append(["%.2f/%.2f" % (made[m][1], true[m][1]) for m in true])
+        assert all(abs(made[m][1] / true[m][1] - 1) < 0.15 for m in true), (words, said[-1])
+        assert abs(1200 * math.log2(made[1][0] / true[1][0])) < 5, (words, made[1], true[1])
+    return said
+
+
+def test_a_drum_sounds_its_principal():
+    """drums of no usual size or range: (1,1) within 5 cents, and it is said that the rest is not"""
+    for inches, tune in ((23, "A2"), (24, "D3")):
+        score, sound = struck("size", inches, f"d tune {tune};")
+        notes, made = fitted(sound)
+        cents = 1200 * math.log2(made[1][0] / modes(score)[1][0])
+        assert abs(cents) < 5 and "tuned by (1,1)" in notes, (inches, cents, notes)
+
+
+def test_a_room_that_hides_the_drum_is_told():
+    score, sound = struck("hidden", 26, "d tune A2; d decay 1.5;")
+    notes, made = fitted(sound)
+    assert "the room rings longer" in notes and made[2][1] < 1.5 * modes(score)[2][1], (notes, made)
+    assert "the room" not in fitted(struck("plain", 26, "d tune A2;")[1])[0]
+
+
+def test_a_drum_that_rings_otherwise_is_told():
+    """no membrane's (1,1) rings 25 s: air takes more"""
+    sound = write_wave("long.wav", rings([(110.0, 25, 0.3), (165.1, 25, 0.2), (217.1, 25, 0.2), (266.5, 25, 0.15), (317.4, 25, 0.1)], 4.0))
+    done = himc("fit", sound, "-o", path("long.txt"), "--instrument", "timpano")
+    assert done.returncode == 0 and "Hz rings" in done.stderr and "made" in done.stderr, done.stderr
+
+
+def test_an_offset_is_taken_out():
+    """of the recorder, in each channel its own"""
+    stroke = [x + d for x in rings(BAR) for d in (0.05, -0.02)]
+    found = json.loads(good("fit", write_wave("offset.wav", stroke, 2), "-o", path("offset.txt"), "--json"))["partials"]
+    for f, t60, _ in BAR:
+        assert any(abs(p["hz"] - f) < 0.1 and abs(p["t60_s"] / t60 - 1) < 0.03 for p in found), found
+
+
+def test_a_drum_is_named_as_its_file():
+    sound = write_wave("bar.wav", rings(BAR))
+    for file, name in (("Pauke-1", "pauke1"), ("P\u00e4ukchen", "paukchen"), ("2\u00c9t\u00e9", "ete"), ("123", "fitted")):
+        good("fit", sound, "-o", path(file + ".txt"), "--instrument", "modes")
+        assert f"instrument {name} modes" in open(path(file + ".txt")).read(), file
+
+
 def test_a_second_drum_is_told():
     sounds = [read_wave(recorded(i)[1]) for i in (1, 14)]
     peaks = [max(max(s), -min(s)) for s in sounds]
@@ -248,6 +311,24 @@ def test_a_drum_plays_wherever_it_is_called():
     again = os.path.join(home, "sub/rim.txt")
     assert json.loads(good("render", again, "-o", path("again.wav"), "--json", where=away))["played"] == 1
     assert abs(max(read_modes(again, away)) / BAR[-1][0] - 1) < 0.001
+
+
+def blow_beside_ring(samples):
+    """(dB) the peak of 3 ms from the onset beside that of 10 to 300 ms; and the latter"""
+    loud = 0.1 * max(map(abs, samples))
+    first = next(n for n, x in enumerate(samples) if abs(x) > loud)
+    peak = [max(map(abs, samples[first + int(a * RATE) : first + int(b * RATE)])) for a, b in ((0, 0.003), (0.01, 0.3))]
+    return 20 * math.log10(peak[0] / peak[1]), 20 * math.log10(peak[1])
+
+
+def test_a_list_rings_more_than_it_clicks():
+    """a bell, as loud as a drum"""
+    sound = rings([(220, 8, 0.15), (441, 6, 0.12), (523, 5, 0.1), (660, 4, 0.07), (882, 3, 0.13), (1173, 2, 0.06), (1480, 1.5, 0.04)])
+    good("fit", write_wave("bell.wav", sound), "-o", path("bell.txt"))
+    good("render", path("bell.txt"), "-o", path("again.wav"))
+    blow, level = blow_beside_ring(read_wave(path("again.wav"))[::2])
+    assert blow < blow_beside_ring(sound)[0] + 6 and -25 < level < -5, (blow, level)
+    return "%.1f dB, %.1f dB" % (blow, level)
 
 
 def read_modes(score, where):

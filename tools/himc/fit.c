@@ -24,12 +24,18 @@
 #define UNKNOWN (-170.0)       // (dB) digital silence before the stroke, or nothing
 #define LEAST_SCORE 10.0       // of a drum (dB) ...
 #define MOST_APART 5.5         // ... and of its blow's spectrum (dB); chosen: bars have 8 and more
-#define LAWFUL 1.5       // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
-#define UNLIKE 0.1       // (dB) two mallets differ by this ...
-#define UNLIKE_PART 0.15 // ... and per distance, or they are not told apart; chosen
-#define ALIKE 0.003      // per frequency: so near it is
-#define SURE 6.0         // (dB) clear of the others
-#define STEADY 0.2       // (Hz)
+#define LAWFUL 1.5        // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
+#define UNLIKE 0.1        // (dB) two mallets differ by this ...
+#define UNLIKE_PART 0.15  // ... and per distance, or they are not told apart; chosen
+#define ALIKE 0.003       // per frequency: so near it is
+#define SURE 6.0          // (dB) clear of the others
+#define STEADY 0.2        // (Hz)
+#define CENTS 5.0         // a principal so far from the recorded one is told
+#define DECAYS_APART 0.26 // of ln T60, 30 %: told ...
+#define CERTAIN 0.15      // ... of a T60 known within this part of it ...
+#define TOLD_BY 4         // pairings; the middle one of them is told
+#define LOUD 40.0         // (dB) below the loudest a partial is not certain
+#define HELD_UP 2.0       // ... and longer than the room's by this, if it is longer than made
 
 enum { OUT, INSTRUMENT, JSON };
 
@@ -54,14 +60,28 @@ typedef struct fit {
     cli_file file, second_file;                       // the drum's, and that one
 } fit;
 
+// a letter of the path without its mark and as a small one, or another character as it is
+static char plain(const char **at)
+{
+    static const char latin[] = "aaaaaaaceeeeiiiidnooooo-ouuuuyts"; // U+00C0 on, twice
+    unsigned char c = (unsigned char)**at, next = (unsigned char)(*at)[1];
+    if (c == 0xc3 && next >= 0x80 && next < 0xc0) {
+        ++*at;
+        return latin[next % 32];
+    }
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : (char)c;
+}
+
 // the name of the drum: the file's without folder, ending and what a drum's name cannot have
 static void name_drum(const char *path, char *name, size_t size)
 {
     const char *slash = strrchr(path, '/');
     size_t n = 0;
-    for (const char *at = slash ? slash + 1 : path; *at && *at != '.' && n + 1 < size; at++)
-        if ((*at >= 'a' && *at <= 'z') || (n > 0 && *at >= '0' && *at <= '9'))
-            name[n++] = *at;
+    for (const char *at = slash ? slash + 1 : path; *at && *at != '.' && n + 1 < size; at++) {
+        char c = plain(&at);
+        if ((c >= 'a' && c <= 'z') || (n > 0 && c >= '0' && c <= '9'))
+            name[n++] = c;
+    }
     name[n] = '\0';
     himc_command command;
     himc_atom atom = {HIMC_ATOM_SYMBOL, 0, name};
@@ -160,6 +180,63 @@ static bool find_drum(fit *f, const char *kind, himc_error *error)
     return !f->list || partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
 }
 
+// known well, as loud as others, and not held up by the room
+static bool is_certain(const fit *f, const partial *p, double made, double loudest)
+{
+    return p->clear > SURE && p->frequency_error < STEADY && p->t60_error < CERTAIN * p->t60 &&
+           p->energy > loudest - LOUD && (p->t60 < made || p->t60 > HELD_UP * f->found.room);
+}
+
+typedef struct pairing {
+    const partial *found;
+    double t60; // made
+} pairing;
+
+static int by_decay(const void *a, const void *b)
+{
+    const pairing *p = a, *q = b;
+    double x = p->found->t60 * q->t60, y = q->found->t60 * p->t60;
+    return (x > y) - (x < y);
+}
+
+// says where a drum's principal is, and how its partials ring, if certainly not as recorded
+static bool say_apart(const fit *f, himc_error *error)
+{
+    fit_mode modes[FIT_MODES];
+    pairing pair[4 * FIT_ORDERS];
+    const fit_drum *d = &f->drum;
+    int count = fit_drum_modes(d, modes, error), pairs = 0;
+    double loudest = -INFINITY, cents = INFINITY;
+    for (int i = 0; i < f->found.count; i++)
+        loudest = fmax(loudest, f->found.row[i].energy);
+    for (int i = 0; i < 2 * FIT_MODES; i++) { // each member found beside both made
+        const fit_mode *m = &modes[i / 2];
+        int k = 2 * (m->m - 1) + i % 2;
+        if (i / 2 >= count || m->n != 1 || k < 0 || k >= 2 * FIT_ORDERS || d->of[k] < 0)
+            continue;
+        const partial *p = &f->found.row[d->of[k]];
+        double here = 1200 * log2(m->frequency / p->frequency);
+        if (is_certain(f, p, m->t60, loudest))
+            pair[pairs++] = (pairing){p, m->t60};
+        if (m->m == 1 && is_certain(f, p, 0, loudest) && fabs(here) < fabs(cents))
+            cents = here;
+    }
+    qsort(pair, (size_t)pairs, sizeof *pair, by_decay);
+    const pairing *middle = &pair[pairs / 2];
+    if (isfinite(cents) && fabs(cents) > CENTS)
+        cli_say("note: (1,1) is made %+.0f cents from where it sounds\n", cents);
+    if (pairs >= TOLD_BY && fabs(log(middle->found->t60 / middle->t60)) > DECAYS_APART)
+        cli_say("note: %.0f Hz rings %.2f s, made %.2f s\n", middle->found->frequency,
+                middle->found->t60, middle->t60);
+    if (d->strange)
+        cli_say("note: tuned by (1,1): no drum of %g inches has the other partials there\n",
+                d->inches);
+    if (d->hidden)
+        cli_say("note: the room rings longer than the drum: losses and tuning are uncertain, "
+                "expected a drier or longer one\n");
+    return count > 0;
+}
+
 static bool work(fit *f, const cli_arguments *a, himc_error *error)
 {
     const char *kind = a->value[INSTRUMENT], *out = a->value[OUT];
@@ -192,7 +269,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
                              "makes the nearest)\n"
                            : "note: no timpano found: a list of modes (--instrument timpano makes "
                              "the nearest)\n");
-    return true;
+    return f->list || say_apart(f, error);
 }
 
 // two mallets whose blows are as near, beside how near they are, are not told apart

@@ -61,13 +61,28 @@ static const struct {
 #define STRANGE 0.05         // part of pairs that tell something else; chosen
 #define SUREST 0.03          // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
 #define HELD 0.2             // ... and, in a room that outlasts it, so much more
+#define ALONE_STEP 0.0002    // per frequency: in such steps one pair is looked for ...
+#define ALONE_TRIED 301      // ... alone, 3 % either way
+#define ALONE_CLEAR 60.0     // (ln) chosen: in a room that hides it 40, else 100 and more ...
+#define ALONE_GAIN 20.0      // ... and likelier there by so much ...
+#define ALONE_APART 0.0029   // ... and 5 cents away
 #define MISTUNED 5           // a pair of an uneven head is beside its place; tried ...
 #define MISTUNED_STEP 0.0001 // ... per frequency
 #define DECAYS_TRIED 49
 #define TRIED_MOST (2 * FINE + 1) // of tunings and decays
 #define DECAY_STEP 0.05           // (ln)
-#define LOSSES_MOST 3.0           // in units of the usual ones
+#define LOSSES_MOST 3.0           // in units of those that they begin at
 #define LOSSES_STEP 0.025
+#define BEGIN_LEAST 0.1     // losses begin at so much of the usual ones ...
+#define BEGIN_MOST 32.0     // ... up to so much ...
+#define BEGIN_STEP 1.15     // ... in such steps ...
+#define BEGIN_NEAR 2.0      // ... (ln) less likely so far from the usual ones
+#define BEGIN_WITHIN 0.1    // (ln) of a found decay; chosen
+#define BEGIN_SURE 5.0      // (dB of partials) less, and the room hides how they ring ...
+#define HIDDEN_WITHIN 0.5   // ... so that losses are as likely farther from where they begin
+#define BEGIN_FAR 0.6       // (ln of S0) those are far from the usual ones
+#define BEGIN_USUAL_FAR 0.6 // the usual ones, if they explain so much of what such do, or ...
+#define BEGIN_USUAL 0.25    // the usual ones, if they explain so much of what the best do
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -213,6 +228,11 @@ typedef struct ringing {
     double frequency, apart, air, load, due;
 } ringing;
 
+static double lost(const fit_drum *d, double frequency)
+{
+    return d->constant + d->square * pow(2 * HIMC_PI * frequency, 2);
+}
+
 static int find_ringing(double room, const fit_drum *d, ringing out[PAIRS], himc_error *error)
 {
     fit_mode none[FIT_MODES], one[FIT_MODES];
@@ -228,8 +248,7 @@ static int find_ringing(double room, const fit_drum *d, ringing out[PAIRS], himc
             ringing r;
             r.air = pair_of(none, count, m, n, &r.frequency, &r.apart);
             r.load = pair_of(one, count, m, n, &r.frequency, &r.apart) - r.air;
-            r.due = r.air + r.load * (FIT_USUAL_CONSTANT +
-                                      FIT_USUAL_SQUARE * pow(2 * HIMC_PI * r.frequency, 2));
+            r.due = r.air + r.load * lost(d, r.frequency);
             if (r.air > 0 && log(1000) / r.due > LONGER * room)
                 out[kept++] = r;
         }
@@ -295,48 +314,143 @@ static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, h
     return true;
 }
 
-// S0 and S1, in units of the usual ones, at which the decays of those pairs are likeliest; drawn to
-// the usual ones as if each were known within a part of itself.
-static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+// per frequency: how far from there a pair is by itself, if that is clear; or 0
+static bool place(const partials_sound *sound, double room, const ringing *r, double *apart,
+                  himc_error *error)
+{
+    double likely[ALONE_TRIED] = {0}, shift[ALONE_TRIED];
+    int middle = ALONE_TRIED / 2, best = middle;
+    for (int k = 0; k < ALONE_TRIED; k++)
+        shift[k] = ALONE_STEP * (k - middle) * r->frequency;
+    // a short recording has nothing late: all 0
+    for (int late = room > 0 ? 1 : 0; late >= 0 && likely[best] == 0; late--) {
+        if (!partials_likely(sound, late ? PARTIALS_LATE : PARTIALS_EARLY, late ? room : 0,
+                             r->frequency, r->apart, shift, ALONE_TRIED, &r->due, 1, likely, error))
+            return false;
+        for (int k = 0; k < ALONE_TRIED; k++)
+            best = likely[k] > likely[best] ? k : best;
+    }
+    bool clear = likely[best] > ALONE_CLEAR && likely[best] > likely[middle] + ALONE_GAIN;
+    *apart = clear ? ALONE_STEP * (best - middle) : 0;
+    return true;
+}
+
+// The principal is what players tune. Where it is not where all pairs together say, the drum has
+// not quite this one's ratios, and is tuned by it alone.
+static bool tune_principal(const partials_sound *sound, double room, fit_drum *d, himc_error *error)
+{
+    ringing pair[PAIRS];
+    double apart = 0;
+    if (find_ringing(0, d, pair, error) < 1 || !place(sound, room, &pair[0], &apart, error))
+        return false;
+    d->strange = fabs(apart) > ALONE_APART;
+    d->tune *= d->strange ? 1 + apart : 1;
+    return true;
+}
+
+// the pairs that outlast the room, each where it is
+static int find_placed(const partials_sound *sound, double outlast, double room, const fit_drum *d,
+                       ringing pair[PAIRS], himc_error *error)
+{
+    int count = find_ringing(outlast, d, pair, error);
+    for (int i = 0; d->strange && i < count; i++) {
+        double apart;
+        if (!place(sound, room, &pair[i], &apart, error))
+            return -1;
+        pair[i].frequency *= 1 + apart;
+    }
+    return count;
+}
+
+// how far the decays found near the pairs are a drum's
+static double begun(const partials_list *partials, const ringing *pair, int count,
+                    const fit_drum *d)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const ringing *r = &pair[i];
+        double t60 = log(1000) / (r->air + r->load * lost(d, r->frequency));
+        for (int k = 0; k < partials->count; k++) {
+            const partial *p = &partials->row[k];
+            if (fabs(p->frequency - r->frequency) > fmax(CLOSE * r->frequency, r->apart))
+                continue;
+            double part = p->t60_error / p->t60 / BEGIN_WITHIN;
+            double wrong = log(p->t60 / t60) / BEGIN_WITHIN;
+            sum += worth(p) / (1 + part * part) / (1 + wrong * wrong);
+        }
+    }
+    double s0 = log(d->constant / FIT_USUAL_CONSTANT), s1 = log(d->square / FIT_USUAL_SQUARE);
+    return sum * exp(-(s0 * s0 + s1 * s1) / (2 * BEGIN_NEAR * BEGIN_NEAR));
+}
+
+// the losses at which the search begins: the usual ones, unless the partials found ring otherwise
+static bool begin_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+                         himc_error *error)
+{
+    ringing pair[PAIRS];
+    int count = find_placed(sound, 0, partials->room, d, pair, error);
+    double usual = begun(partials, pair, count, d), best = 0;
+    fit_drum begin = *d, tried = *d;
+    for (double s0 = BEGIN_LEAST; s0 < BEGIN_MOST; s0 *= BEGIN_STEP)
+        for (double s1 = BEGIN_LEAST; s1 < BEGIN_MOST; s1 *= BEGIN_STEP) {
+            tried.constant = s0 * FIT_USUAL_CONSTANT, tried.square = s1 * FIT_USUAL_SQUARE;
+            double here = begun(partials, pair, count, &tried);
+            if (here > best)
+                best = here, begin = tried;
+        }
+    bool sure = best > BEGIN_SURE;
+    bool far = sure && fabs(log(begin.constant / FIT_USUAL_CONSTANT)) > BEGIN_FAR;
+    if (usual < (far ? BEGIN_USUAL_FAR : BEGIN_USUAL) * best) {
+        *d = begin;
+        d->hidden = !sure;
+    }
+    return count > 0;
+}
+
+// S0 and S1, in units of those they begin at, at which the decays of those pairs are likeliest;
+// drawn to these as if each were known within a part of itself. `outlast` 0: by the early sound.
+static bool find_losses(const partials_sound *sound, double room, double outlast, fit_drum *d,
                         himc_error *error)
 {
     ringing pair[PAIRS];
     double likely[PAIRS][DECAYS_TRIED], decay[DECAYS_TRIED], best = -INFINITY, at[2] = {1, 1};
     double each[MISTUNED][DECAYS_TRIED], shift[MISTUNED];
-    int count = find_ringing(partials->room, d, pair, error);
+    double within = outlast > 0 || room == 0 ? USUAL_WITHIN : HIDDEN_WITHIN;
+    int count = find_placed(sound, outlast, room, d, pair, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
         for (int j = 0; j < MISTUNED; j++)
             shift[j] = MISTUNED_STEP * (j - MISTUNED / 2) * pair[i].frequency;
-        if (!partials_likely(sound, partials->room > 0 ? PARTIALS_LAST : PARTIALS_EARLY,
-                             partials->room, pair[i].frequency, pair[i].apart, shift, MISTUNED,
-                             decay, DECAYS_TRIED, each[0], error))
+        if (!partials_likely(sound, outlast > 0 ? PARTIALS_LAST : PARTIALS_EARLY, outlast,
+                             pair[i].frequency, pair[i].apart, shift, MISTUNED, decay, DECAYS_TRIED,
+                             each[0], error))
             return false;
         for (int k = 0; k < DECAYS_TRIED; k++) {
             likely[i][k] = -INFINITY;
             for (int j = 0; j < MISTUNED; j++)
                 likely[i][k] = fmax(likely[i][k], each[j][k]);
         }
-        double held = partials->room * pair[i].due / log(1000); // by the room
+        double held = outlast * pair[i].due / log(1000); // by the room
         blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);
     }
     for (double s0 = 0; s0 < LOSSES_MOST; s0 += LOSSES_STEP)
         for (double s1 = 0; s1 < LOSSES_MOST; s1 += LOSSES_STEP) {
-            double sum = -0.5 * (pow((s0 - 1) / USUAL_WITHIN, 2) + pow((s1 - 1) / USUAL_WITHIN, 2));
+            double sum = -0.5 * (pow((s0 - 1) / within, 2) + pow((s1 - 1) / within, 2));
             for (int i = 0; i < count; i++) {
-                double lost = s0 * FIT_USUAL_CONSTANT +
-                              s1 * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * pair[i].frequency, 2);
-                double k = log((pair[i].air + pair[i].load * lost) / pair[i].due) / DECAY_STEP +
-                           DECAYS_TRIED / 2;
+                double due =
+                    pair[i].air + pair[i].load * lost(&(fit_drum){.constant = s0 * d->constant,
+                                                                  .square = s1 * d->square},
+                                                      pair[i].frequency);
+                double k = log(due / pair[i].due) / DECAY_STEP + DECAYS_TRIED / 2;
                 int low = (int)fmin(fmax(k, 0), DECAYS_TRIED - 2);
                 sum += likely[i][low] + (k - low) * (likely[i][low + 1] - likely[i][low]);
             }
             if (sum > best)
                 best = sum, at[0] = s0, at[1] = s1;
         }
-    d->constant = FIT_USUAL_CONSTANT * at[0];
-    d->square = FIT_USUAL_SQUARE * at[1];
+    d->constant *= at[0];
+    d->square *= at[1];
     return count >= 0;
 }
 
@@ -427,10 +541,19 @@ int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
     }
     while (count > 0 && choice[count - 1].score < choice[0].score - UNLIKELY)
         count--;
-    for (int i = 0; i < count; i++)
-        if (!find_tuning(sound, partials->room, &choice[i], error) ||
-            !find_losses(sound, partials, &choice[i], error))
+    for (int i = 0; i < count; i++) {
+        fit_drum *d = &choice[i];
+        double room = partials->room;
+        fit_mode modes[FIT_MODES];
+        if (!find_tuning(sound, room, d, error) || !tune_principal(sound, room, d, error) ||
+            !begin_losses(sound, partials, d, error) ||
+            !find_losses(sound, room, d->hidden ? 0 : room, d, error))
             return 0;
+        int found = fit_drum_modes(d, modes, error);
+        if (found == 0)
+            return 0;
+        assign(partials, modes, found, d);
+    }
     return count;
 }
 

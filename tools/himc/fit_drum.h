@@ -18,6 +18,8 @@ typedef struct fit_drum {
     int other;               ///< that mallet
     int of[2 * FIT_ORDERS];  ///< place of the partial that a member of the pair (m,1) is, from
                              ///< 2 (m - 1) on, cosine and sine; -1: none found
+    bool strange;            ///< tuned by (1,1) alone: its other partials are elsewhere
+    bool hidden;             ///< by the room, which rings longer: losses are uncertain
     double score;
     double comb; ///< (dB) by which its modes stand out of the spectrum, summed
 } fit_drum;

@@ -11,6 +11,7 @@
 
 #define CELL 0.005        // (s) of the envelope
 #define SILENT 1e-4       // peak, -80 dB of full scale
+#define OFFSET 1e-3       // mean per peak: more is no stroke's
 #define BEGINS 0.1        // of the peak: there a stroke has begun
 #define NEAR_LOUDEST 0.25 // of a cell's level
 #define LEAST 0.5         // (s) after the onset
@@ -32,11 +33,12 @@ typedef struct stroke {
     int channels;
     double rate, peak;
     const char *name;
+    double offset[PARTIALS_TRACKS]; // of each channel: what is taken out
 } stroke;
 
 static double at(const stroke *s, size_t frame, int channel)
 {
-    return (double)s->x[frame * (size_t)s->channels + (size_t)channel];
+    return (double)s->x[frame * (size_t)s->channels + (size_t)channel] - s->offset[channel];
 }
 
 // RMS of all channels over so many frames, fewer at the end
@@ -50,14 +52,28 @@ static double level(const stroke *s, size_t from, size_t frames)
     return end > from ? sqrt(sum / ((double)(end - from) * s->channels)) : 0;
 }
 
+// the offset of the recorder, if it has one
+static void find_offset(stroke *s)
+{
+    for (int c = 0; c < s->channels; c++) {
+        double sum = 0, peak = 0;
+        for (size_t i = 0; i < s->frames; i++) {
+            sum += at(s, i, c) / (double)s->frames;
+            peak = fmax(peak, fabs(at(s, i, c)));
+        }
+        s->offset[c] = fabs(sum) > OFFSET * peak ? sum : 0;
+    }
+}
+
 // the peak, and where the sound first comes near the loudest cell's level
 static void measure(stroke *s)
 {
     size_t cell = (size_t)(CELL * s->rate);
     double loudest = 0;
     s->peak = 0;
-    for (size_t i = 0; i < s->frames * (size_t)s->channels; i++)
-        s->peak = fmax(s->peak, fabs((double)s->x[i]));
+    for (size_t i = 0; i < s->frames; i++)
+        for (int c = 0; c < s->channels; c++)
+            s->peak = fmax(s->peak, fabs(at(s, i, c)));
     for (size_t i = 0; i < s->frames; i += cell)
         loudest = fmax(loudest, level(s, i, cell));
     size_t first = 0;
@@ -171,6 +187,7 @@ bool partials_add(partials_sound *sound, const float *samples, size_t frames, in
         if (!isfinite(samples[i]))
             return himc_error_set(error, "%s: frame %zu is not a finite number", name,
                                   i / (size_t)channels);
+    find_offset(&s);
     measure(&s);
     if (!check(&s, &sound->noise, error))
         return false;
