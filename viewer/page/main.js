@@ -318,7 +318,7 @@ let previous = clock(),
     virtual = 0,
     held = false; // nothing is drawn while the sound is being opened, which needs this thread, too
 function frame(_, now = clock(), draw = true) {
-    const dt = now - previous,
+    const dt = Math.max(0, now - previous), // after held frames the clock may be behind theirs
         begin = performance.now();
     previous = now;
     if (playback) {
