@@ -313,24 +313,6 @@ def test_a_drum_plays_wherever_it_is_called():
     assert abs(max(read_modes(again, away)) / BAR[-1][0] - 1) < 0.001
 
 
-def blow_beside_ring(samples):
-    """(dB) the peak of 3 ms from the onset beside that of 10 to 300 ms; and the latter"""
-    loud = 0.1 * max(map(abs, samples))
-    first = next(n for n, x in enumerate(samples) if abs(x) > loud)
-    peak = [max(map(abs, samples[first + int(a * RATE) : first + int(b * RATE)])) for a, b in ((0, 0.003), (0.01, 0.3))]
-    return 20 * math.log10(peak[0] / peak[1]), 20 * math.log10(peak[1])
-
-
-def test_a_list_rings_more_than_it_clicks():
-    """a bell, as loud as a drum"""
-    sound = rings([(220, 8, 0.15), (441, 6, 0.12), (523, 5, 0.1), (660, 4, 0.07), (882, 3, 0.13), (1173, 2, 0.06), (1480, 1.5, 0.04)])
-    good("fit", write_wave("bell.wav", sound), "-o", path("bell.txt"))
-    good("render", path("bell.txt"), "-o", path("again.wav"))
-    blow, level = blow_beside_ring(read_wave(path("again.wav"))[::2])
-    assert blow < blow_beside_ring(sound)[0] + 6 and -25 < level < -5, (blow, level)
-    return "%.1f dB, %.1f dB" % (blow, level)
-
-
 def read_modes(score, where):
     return [float(r["frequency_hz"]) for r in csv.DictReader(io.StringIO(good("modes", score, where=where))) if float(r["frequency_hz"]) < 5000]
 
