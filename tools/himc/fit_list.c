@@ -15,10 +15,10 @@
 
 #define MODES 160      // the strongest; chosen: of halls' recordings a third of all poles
 #define MASS 0.1       // (kg) per mode: what all have together where it is struck, three mallets'
-#define LOUD 4.0       // (Pa s/m) of all modes, per mode; chosen: as loud as drums
+#define LOUD 2.5       // (Pa s/m) of all modes, per mode; chosen: as loud as drums
 #define HARDEST 1e9    // (N/m^1.5) ...
 #define SHORTEST 17e-5 // (s) ... and its contact, mf
-#define LONGEST 4e-3   // (s)
+#define LONGEST 2e-3   // (s)
 #define ROUNDS 2
 #define CLEAR 0.0           // (dB) a partial less clear is the room's
 #define NEAR 1.5            // (Hz)
@@ -65,7 +65,7 @@ static bool hear(const cli_file *file, double rate, partials_sound *out, himc_er
 }
 
 // (s) a contact's own push, which all modes radiate at once, is softest beside what rings at
-// pi sqrt(sum(a/w)/sum(a w)); longer ones would make levels depend on the blow
+// pi sqrt(sum(a/w)/sum(a w)); half of that, at which levels hardly depend on the blow
 static double contact(const list *l)
 {
     double slow = 0, fast = 0;
@@ -74,23 +74,20 @@ static double contact(const list *l)
         slow += amplitude / l->of[i]->frequency;
         fast += amplitude * l->of[i]->frequency;
     }
-    return fmin(fmax(0.5 * sqrt(slow / fast), SHORTEST), LONGEST);
+    return fmin(fmax(0.25 * sqrt(slow / fast), SHORTEST), LONGEST);
 }
 
 static bool write(const list *l, double radius, const char *path, cli_file *file, himc_error *error)
 {
-    double level = 0;
-    int first = 0;
+    double rings = 0, strongest = -INFINITY, pitch = 0;
     cli_file_drop(file);
     if (!cli_file_open(file, path, error))
         return false;
     for (int i = 0; i < l->count; i++) {
-        level = hypot(level, pow(10, l->of[i]->level / 20));
-        if (l->of[i]->energy > l->of[first]->energy)
-            first = i;
+        rings = hypot(rings, 2 * HIMC_PI * l->of[i]->frequency * l->pressure[i]);
+        pitch = l->of[i]->energy > strongest ? l->of[i]->frequency : pitch;
+        strongest = fmax(strongest, l->of[i]->energy);
     }
-    double pitch = l->of[first]->frequency, all = level / pow(10, l->of[first]->level / 20);
-    double rings = all * 2 * HIMC_PI * pitch * l->pressure[first];
     fprintf(file->stream,
             "# made by himc fit\npitch %.6g\nmallet %.3g 1.5 0.03\nsurface struck disc %g\n", pitch,
             HARDEST * pow(SHORTEST / contact(l), 2.5), radius);
