@@ -13,12 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MODES 160      // the strongest; chosen: of halls' recordings a third of all poles
-#define MASS 0.1       // (kg) per mode: what all have together where it is struck, three mallets'
-#define LOUD 2.5       // (Pa s/m) of all modes, per mode; chosen: as loud as drums
-#define HARDEST 1e9    // (N/m^1.5) ...
-#define SHORTEST 17e-5 // (s) ... and its contact, mf
-#define LONGEST 2e-3   // (s)
+#define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
+#define MASS 0.1      // (kg) per mode: what all have together where it is struck, three mallets'
+#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest; chosen: as loud as lists.c and drums
 #define ROUNDS 2
 #define CLEAR 0.0           // (dB) a partial less clear is the room's
 #define NEAR 1.5            // (Hz)
@@ -64,36 +61,23 @@ static bool hear(const cli_file *file, double rate, partials_sound *out, himc_er
     return good;
 }
 
-// (s) a contact's own push, which all modes radiate at once, is softest beside what rings at
-// pi sqrt(sum(a/w)/sum(a w)); half of that, at which levels hardly depend on the blow
-static double contact(const list *l)
-{
-    double slow = 0, fast = 0;
-    for (int i = 0; i < l->count; i++) {
-        double amplitude = pow(10, l->of[i]->level / 20);
-        slow += amplitude / l->of[i]->frequency;
-        fast += amplitude * l->of[i]->frequency;
-    }
-    return fmin(fmax(0.25 * sqrt(slow / fast), SHORTEST), LONGEST);
-}
-
 static bool write(const list *l, double radius, const char *path, cli_file *file, himc_error *error)
 {
-    double rings = 0, strongest = -INFINITY, pitch = 0;
+    double loudest = 0, strongest = -INFINITY, pitch = 0;
     cli_file_drop(file);
     if (!cli_file_open(file, path, error))
         return false;
     for (int i = 0; i < l->count; i++) {
-        rings = hypot(rings, 2 * HIMC_PI * l->of[i]->frequency * l->pressure[i]);
+        loudest = fmax(loudest, l->pressure[i]);
         pitch = l->of[i]->energy > strongest ? l->of[i]->frequency : pitch;
         strongest = fmax(strongest, l->of[i]->energy);
     }
     fprintf(file->stream,
-            "# made by himc fit\npitch %.6g\nmallet %.3g 1.5 0.03\nsurface struck disc %g\n", pitch,
-            HARDEST * pow(SHORTEST / contact(l), 2.5), radius);
+            "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n", pitch,
+            radius);
     for (int i = 0; i < l->count; i++)
         fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
-                fmin(fmax(1e-12, LOUD * l->count * l->pressure[i] / rings), 1), l->of[i]->frequency,
+                fmax(1e-12, PRESSURE * l->count * l->pressure[i] / loudest), l->of[i]->frequency,
                 fmin(l->t60[i], 60), MASS * l->count);
     return cli_file_close(file, error);
 }
