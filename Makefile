@@ -75,7 +75,7 @@ UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-# those that look at pages in a browser, which take longest
+# scripts: those that look at pages in a browser, which take longest, and the others
 PAGES     := $(wildcard tests/page/test_*.sh) $(addprefix tests/viewer/test_viewer_,look.sh page.sh page_edit.sh)
 SCRIPTS   := $(filter-out tests/pd/test_package.sh $(PAGES),$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
@@ -246,7 +246,7 @@ test-page: deps ## the tests of the pages, viewer's and himc.html, in Chromium a
 	@tools/build/deps.sh tools/build/deps-viewer.txt tools/build/deps-browser.txt tools/build/deps-page.txt
 	@$(MAKE) check-page
 
-check-page: all $(PAGE) $(VIEWER)
+check-page: all $(PAGE) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(PAGES)
 
 test-long: deps ## all tests at full length, and those too slow for every day

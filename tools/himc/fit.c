@@ -34,8 +34,8 @@
 #define DECAYS_APART 0.26 // of ln T60, 30 %: told ...
 #define CERTAIN 0.15      // ... of a T60 known within this part of it ...
 #define TOLD_BY 4         // pairings; the middle one of them is told
-#define LOUD 40.0         // (dB) below the loudest a partial is not certain
-#define HELD_UP 2.0       // ... and longer than the room's by this, if it is longer than made
+#define LOUD 40.0         // (dB) below the loudest a partial is not certain ...
+#define HELD_UP 2.0       // ... nor a T60 longer than made, but below so many T60s of the room
 
 enum { OUT, INSTRUMENT, JSON };
 
@@ -60,7 +60,7 @@ typedef struct fit {
     cli_file file, second_file;                       // the drum's, and that one
 } fit;
 
-// a letter of the path without its mark and as a small one, or another character as it is
+// the next letter of the path, small and without its mark; another character as it is
 static char plain(const char **at)
 {
     static const char latin[] = "aaaaaaaceeeeiiiidnooooo-ouuuuyts"; // U+00C0 on, twice
@@ -189,7 +189,7 @@ static bool is_certain(const fit *f, const partial *p, double made, double loude
 
 typedef struct pairing {
     const partial *found;
-    double t60; // made
+    double t60; // made (s)
 } pairing;
 
 static int by_decay(const void *a, const void *b)

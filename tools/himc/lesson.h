@@ -13,8 +13,8 @@
 #define LESSON_FAULTS 32     ///< chosen: most that are kept; three are named
 #define LESSON_NAMED 3       ///< faults that are named first
 #define LESSON_ROLLS 1024    ///< most rolls and runs; half of them written
-#define LESSON_JND_LEVEL 1.0 ///< (dB)
-#define LESSON_PLACE 0.02    ///< (m)
+#define LESSON_JND_LEVEL 1.0 ///< threshold of loudness (dB)
+#define LESSON_PLACE 0.02    ///< threshold of places (m)
 #define LESSON_LIMBS 4       ///< shares of shoulder, elbow, wrist with grip, trunk
 #define LESSON_MOST 20000    ///< strokes of a lesson; chosen: an hour
 #define LESSON_RATE 8000     ///< of the model's samples (Hz); chosen: its sound is heard by no one
@@ -91,7 +91,7 @@ typedef struct lesson {
     double level;            ///< mean of all, against the score's dynamics (dB)
     double lead[HIMC_HANDS]; ///< of a hand named for its time; rolls are judged without it (s)
     double length;           ///< of the played strokes (s)
-    double jnd;              ///< threshold of times (s)
+    double jnd;              ///< threshold of times at this tempo (s)
     int turn;                ///< places are read with the take turned by this (degrees) ...
     bool turn_sure;          ///< ... which fits much better than another right angle
     bool body, torques;      ///< shares and torques are known

@@ -132,37 +132,37 @@ static double slope_of(const lesson_course *c)
     return lesson_median(c->scratch, n);
 }
 
-// a fault, its text empty, if a phrase is missing between the asked strokes `from` and `to`
-static lesson_fault *find_phrase(lesson *l, int from, int to, int *first_, int *last_)
+// A fault without its words, if a phrase is missing between the asked strokes `from` and `to`, or
+// NULL; `phrase`: its first and last stroke.
+static lesson_fault *find_phrase(lesson *l, int from, int to, int phrase[2])
 {
-    int first = -1, last = -1, count = 0;
+    int count = 0;
+    phrase[0] = phrase[1] = -1;
     for (int i = from + 1; i < to; i++)
         if (l->seen[l->asked[i].hand] && l->asked[i].by < 0) {
-            first = first < 0 ? i : first;
-            last = i;
-            count++;
+            phrase[0] = count++ == 0 ? i : phrase[0];
+            phrase[1] = i;
         }
     lesson_fault *f = count < PHRASE ? NULL : lesson_fault_add(l, "skip", count, 0, 0, 0.01);
-    for (int i = first; f && i <= last; i++)
+    if (!f)
+        return NULL;
+    for (int i = phrase[0]; i <= phrase[1]; i++)
         l->asked[i].skipped = l->asked[i].by < 0;
-    *first_ = first, *last_ = last;
-    if (f) {
-        lesson_fault_explain(f, 0, "strokes", lesson_none_source);
-        f->threshold = 1;
-    }
+    lesson_fault_explain(f, 0, "strokes", lesson_none_source);
+    f->threshold = 1;
     return f;
 }
 
 // a phrase left out before matched stroke k is named; true if the beat begins again after it
 static bool left_out(lesson *l, const lesson_course *c, int k, bool jumps)
 {
-    int first, last;
+    int phrase[2];
     lesson_fault *f =
-        find_phrase(l, l->played[c->stroke[k - 1]].of, l->played[c->stroke[k]].of, &first, &last);
+        find_phrase(l, l->played[c->stroke[k - 1]].of, l->played[c->stroke[k]].of, phrase);
     if (!f)
         return false;
     snprintf(f->what, sizeof f->what, "You leave out beats %g to %g: %.0f strokes",
-             l->asked[first].beat, l->asked[last].beat, f->effect);
+             l->asked[phrase[0]].beat, l->asked[phrase[1]].beat, f->effect);
     snprintf(f->how, sizeof f->how, "%s", jumps ? "played on without them" : "their time passes");
     return jumps;
 }
@@ -172,9 +172,9 @@ static void find_ends(lesson *l, const lesson_course *c)
 {
     const int ends[] = {l->played[c->stroke[0]].of, l->played[c->stroke[c->n - 1]].of};
     for (int late = 0; late < 2; late++) {
-        int first, last;
+        int phrase[2];
         lesson_fault *f =
-            find_phrase(l, late ? ends[1] : -1, late ? l->asked_count : ends[0], &first, &last);
+            find_phrase(l, late ? ends[1] : -1, late ? l->asked_count : ends[0], phrase);
         if (!f)
             continue;
         snprintf(f->what, sizeof f->what,

@@ -26,8 +26,8 @@
 ///
 /// Any: one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
 /// NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others are not
-/// read. So motion.csv of `himc render` is a take, too. Rows may come at uneven times. Where a semicolon or a tab parts the
-/// cells, numbers may have a decimal comma.
+/// read. So motion.csv of `himc render` is a take, too. Rows may come at uneven times. Where a
+/// semicolon or a tab parts the cells, numbers may have a decimal comma.
 #include "base/noise.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
@@ -37,18 +37,18 @@
 #include <string.h>
 
 #define NOT_THERE (-1)
-#define ROUNDED 0.3 // chosen: of a step; times in hundredths are off so much at 60 Hz
-#define BRIDGED 0.1 // chosen: a fall takes longer (s)
+#define ROUNDED 0.3 // of a step: rounded times are off an even rate by less; chosen: .01 s at 60 Hz
+#define BRIDGED 0.1 // (s) a longer step is a gap; chosen: a fall takes longer
 
 typedef struct plan {
     himc_take *take;
     himc_text text; // its next line is the first row
     size_t size;    // of the file (bytes)
     char separator;
-    double rate;   // (Hz), 0: by the time column
-    double *times; // of the rows (s), then; owned
-    bool uneven;   // the times are not those of an even rate
-    int frames;    // at the rate
+    double rate;   // (Hz); 0: by the time column
+    double *times; // of that column (s), rows; owned
+    bool uneven;   // they are not those of an even rate
+    int frames;    // of the take, at the rate
     int points;
     int *begin;           // column of each point's x (points), rising; owned
     himc_span *names;     // (points); owned
@@ -522,8 +522,8 @@ static bool read_times(plan *p, int rows)
     return rows > 1 || refuse(p, "one row: no rate");
 }
 
-// the rate, and how many frames that makes: rows that are off an even rate by more than rounding
-// are moved to even times, a median step apart
+// The rate, and the number of frames. Rows that are off an even rate by more than rounding are
+// uneven: make_even moves them to times a median step apart.
 static bool find_rate(plan *p, int rows)
 {
     const double *t = p->times;
@@ -562,7 +562,7 @@ static bool find_rate(plan *p, int rows)
     return true;
 }
 
-// moves the rows to even times
+// the rows at even times: on straight lines between two
 static bool make_even(plan *p, int rows)
 {
     himc_take *take = p->take;
@@ -576,14 +576,12 @@ static bool make_even(plan *p, int rows)
             row++;
         double apart = p->times[row + 1] - p->times[row],
                part = fmin((time - p->times[row]) / apart, 1);
-        bool on = part < 1e-6 || part > 1 - 1e-6; // a row itself
+        bool first = part<1e-6, second = part> 1 - 1e-6; // a row itself
         for (int i = 0; i < take->points; i++) {
             himc_vec3 a = *himc_take_at(take, row, i), b = *himc_take_at(take, row + 1, i);
-            himc_vec3 x = himc_vec3_madd(a, part, himc_vec3_sub(b, a));
-            even[(size_t)frame * points + (size_t)i] = on && part < 0.5  ? a
-                                                       : on              ? b
-                                                       : apart > BRIDGED ? himc_vec3_gap()
-                                                                         : x;
+            himc_vec3 between =
+                apart > BRIDGED ? himc_vec3_gap() : himc_vec3_madd(a, part, himc_vec3_sub(b, a));
+            even[(size_t)frame * points + (size_t)i] = first ? a : second ? b : between;
         }
     }
     free(take->x);

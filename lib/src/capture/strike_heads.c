@@ -7,8 +7,8 @@
 /// most seeds within their tolerances is taken (RANSAC: Fischler & Bolles 1981; scored as MSAC:
 /// Torr & Zisserman 2000). Then any fall near the plane is on it, also the softest, and the plane
 /// is fitted again to all of these by weighted least squares. If a good part of the seeds lie
-/// elsewhere and agree on another plane, that is another drum; but not where a hand strikes through
-/// it onto a lower head: there the stick is turned in the air.
+/// elsewhere and agree on another plane, that is another drum. But a plane through which the same
+/// hand strikes a lower head is none: there the stick is turned in the air.
 ///
 /// A head gives way, and more to a faster stick, so soft blows end above the plane of loud ones.
 /// Where rebounds tell how deep each fall went, sharp falls that lie on the head at rest are on it,
@@ -26,8 +26,8 @@
 #include <stdlib.h>
 
 #define LEAST_SEEDS 3 // with fewer all sharp falls are seeds; no fewer make another drum
-#define OVER 0.05     // chosen: a plane is above a head by more (m) ...
-#define BESIDE 0.1    // ... and where the hand falls on both less far apart (m)
+#define OVER 0.05     // (m) a plane in the air is higher than the head by more ...
+#define BESIDE 0.1    // (m) ... and the hand's places on both are less far apart; chosen
 
 typedef struct seeds {
     const himc_fall **fall;
@@ -212,12 +212,14 @@ static int in_the_air(const himc_fall *falls, int count, int a, int b)
     return -1;
 }
 
+// its falls are on no head; -1: none
 static void give_up(himc_fall *falls, int count, himc_strike_head *heads, int head)
 {
-    for (int i = 0; i < count && head >= 0; i++)
+    if (head < 0)
+        return;
+    heads[head].strikes = 0;
+    for (int i = 0; i < count; i++)
         falls[i].head = falls[i].head == head ? -1 : falls[i].head;
-    if (head >= 0)
-        heads[head].strikes = 0;
 }
 
 int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_STRIKE_HEADS])

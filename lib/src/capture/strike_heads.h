@@ -12,13 +12,13 @@
 
 /// The end of a fall: a strike, or a motion in the air.
 typedef struct himc_fall {
-    himc_vec3 x;   ///< position of the tip there (m)
-    double speed;  ///< downward before it (m/s)
-    double within; ///< distance in height at which it is still on a head (m)
-    double depth;  ///< of x below the head at rest; 0: unknown (m)
-    himc_hand hand;
-    bool sharp; ///< as abrupt as a blow; else not much less
-    int head;   ///< out: index of the head that it is on, -1 if none
+    himc_vec3 x;    ///< position of the tip there (m)
+    double speed;   ///< downward before it (m/s)
+    double within;  ///< distance in height at which it is still on a head (m)
+    double depth;   ///< of x below the head at rest; 0: unknown (m)
+    himc_hand hand; ///< that holds the stick
+    bool sharp;     ///< as abrupt as a blow; else not much less
+    int head;       ///< out: index of the head that it is on, -1 if none
 } himc_fall;
 
 /// A plane, not steep: z = height + slope_x (x - x0) + slope_y (y - y0).

@@ -34,7 +34,7 @@
 #define SHADOW_ANGLE 1.2   // 180/150 degrees: the darkest place lies before the far end; as there
 #define SHADOW_MEAN 1.05   // as there, (1 + 0.1/2)
 #define SHADOW_DEPTH 0.95  // as there, (1 - 0.1/2)
-#define KEPT 2             // fades; chosen: 10 ms, which a listener who moves by 3 m needs
+#define KEPT 2             // (fades) that part is longer than the paths; chosen: 10 ms, or 3 m
 #define FLOOR 0.9          // chosen: a wooden floor returns nine tenths
 #define FLOOR_CORNER 4e3   // (Hz) chosen: what it takes of high frequencies
 #define BELOW 0.7          // of the power, below the rim
@@ -162,8 +162,8 @@ static int longest(const himc_ear_taps *taps)
     return most;
 }
 
-// Of the lines so much is in use: what the paths reach back, and some for the next ones. A line
-// that gets longer knows nothing older.
+// Only a part of each line is in use: as much as the paths reach back, and some for the next
+// ones. It gets longer if these need more, and is silent where it has no sound so old.
 static void set_span(himc_ears *e, const himc_ear_taps *taps)
 {
     int before = e->span, needed = longest(taps) + 2 * HIMC_ROOM_RUN + (int)(KEPT / e->step);

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// choices that are no hand: none; a roll is one stroke, of the left hand or the right
+// Choices behind the two hands: the stroke is left out; or a roll is one stroke, SINGLE + hand.
 enum { OMIT = HIMC_HANDS, SINGLE, CHOICES = SINGLE + HIMC_HANDS };
 
 #define NEED 2.0        // of the least time of a leap: what is quicker costs; chosen
@@ -35,7 +35,7 @@ enum { OMIT = HIMC_HANDS, SINGLE, CHOICES = SINGLE + HIMC_HANDS };
 #define SHORT_ROLL 0.3  // what lasts longer is never one stroke (s); chosen: above each leap
 #define MOST_CUTS 16    // strokes among which the parts of a roll are looked for; chosen
 #define CUT_TIME 1e-3   // from one part of a roll to the next (s)
-#define ONE_STROKE 24.0 // more than of a hurry, with it less than of leaving out
+#define ONE_STROKE 24.0 // cost of that; more than a hurry's, and both less than leaving out
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
 /// A stroke of one hand.
@@ -95,8 +95,8 @@ static double roll_begin(const midi_part *part, int roll)
     return begin;
 }
 
-// when a hand may leave a roll for a stroke at that time: from its beginning, as a stroke of each
-// hand is enough, but not so early for one within it (s)
+// When a hand may leave a roll for a stroke at time `at` (s): for one at its end or later from the
+// roll's beginning on, since a stroke of each hand is enough; for one within it later.
 static double leaves_roll(const midi_part *part, int roll, double at)
 {
     double begin = roll_begin(part, roll), end = himc_midi_stroke_end(&part->stroke[roll]);

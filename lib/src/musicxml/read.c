@@ -581,8 +581,9 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                               "hidden notes are left out: rolls are played there", 0, ""},
             [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
                                  "notes are not played: they have no pitch or no length", 0, ""},
-            [MUSIC_GRACES] = {"grace note is not played: no note follows, or one of more than 8",
-                              "grace notes are not played: no note follows, or more than 8", 0, ""},
+            [MUSIC_GRACES] =
+                {"grace note is not played: no note follows, or there are more than 8",
+                 "grace notes are not played: no note follows, or there are more than 8", 0, ""},
             [MUSIC_ATTACKS] = {"accent is not played: no stroke begins there",
                                "accents are not played: no stroke begins there", 0, ""},
             [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",
