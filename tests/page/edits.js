@@ -34,12 +34,17 @@ function editsOf(module, name, bytes, edits, seed) {
     a.run();
     const first = sum(a.pcm),
         length = a.pcm.length;
+    let chosen = null; // changed once more: what is played for it while it is chosen must not be heard
     const change = (wholly = false) => {
         const { statements } = a.events.findLast(e => e.event === "text"),
             strokes = statements.filter(s => s.words.trim().startsWith("stroke ")),
-            { index, words } = strokes[Math.floor(random() * strokes.length)],
-            parts = words.trim().split(/\s+/),
-            began = performance.now();
+            { index, words, hand } = (random() < 0.3 && strokes.find(s => s.index === chosen?.index)) || strokes[Math.floor(random() * strokes.length)],
+            parts = words.trim().split(/\s+/);
+        if (index === chosen?.index) {
+            a.run().shop.look(chosen.time, { left: 0, right: 1 }[hand]);
+            a.run(() => random() < 0.01);
+        }
+        const began = performance.now();
         if (random() < 0.2) a.says(random() < 0.7 ? "undo" : "redo");
         else a.says(`set ${index} ${[...parts.slice(0, 4), random().toFixed(2), ...parts.slice(5)].join(" ")}`);
         const before = a.events.length;
@@ -48,7 +53,10 @@ function editsOf(module, name, bytes, edits, seed) {
         // until so much is there that the page plays from before the stroke (edit.js: BEFORE, LEAD)
         let enough = Infinity;
         a.run(() => {
-            if (!a.shop.order && a.shop.focus && enough === Infinity) enough = (a.shop.focus + 1 - 0.7 + 0.3) / CELL;
+            if (!a.shop.order && a.shop.focus && enough === Infinity) {
+                enough = (a.shop.focus - 0.7 + 0.3) / CELL;
+                chosen = { index, time: a.shop.focus };
+            }
             return a.pcm.length >= enough;
         });
         took.push(performance.now() - began);

@@ -205,9 +205,41 @@ static void test_a_foot_s_strike_has_its_beat(void)
     TEST_ASSERT_EQUAL_DOUBLE(1.5, beat);
 }
 
+#define KIT "setup kit; tempo 60; stroke 4 right legato f snare; "
+
+static himc_performance *kit(const char *strokes)
+{
+    himc_error error;
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_load_text(p, strokes, "s.txt", &error), error.text);
+    return p;
+}
+
+static void test_strokes_that_a_foot_has_played_are_not_exchanged(void)
+{
+    float out[2 * 480];
+    himc_error error;
+    himc_command start;
+    himc_performance *p = kit(KIT "stroke 0 foot legato f kick; stroke 2 foot legato f kick;"),
+                     *other[] = {
+                         kit(KIT "stroke 0 foot legato p kick; stroke 2 foot legato f kick;"),
+                         kit(KIT "stroke 0 foot legato f kick; stroke 2 foot legato p kick;")};
+    TEST_ASSERT_TRUE(himc_command_parse_text(&start, HIMC_PERFORMER, "play", &error) &&
+                     himc_performance_command(p, &start, 0, &error));
+    for (int k = 0; k < 100; k++)
+        himc_performance_read(p, out, 2, 480);
+    for (int later = 0; later < 2; later++) {
+        TEST_ASSERT_EQUAL(later == 1, himc_performance_exchange_strokes(p, other[later]));
+        himc_performance_free(other[later]);
+    }
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_strokes_that_a_foot_has_played_are_not_exchanged);
     RUN_TEST(test_a_foot_plays_on_its_beat_beside_the_hands);
     RUN_TEST(test_feet_alone_play_a_loop_and_stop_when_cleared);
     RUN_TEST(test_what_no_foot_plays_is_refused_in_one_line);

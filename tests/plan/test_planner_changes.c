@@ -2,6 +2,7 @@
 /// and each stroke is still played once, at its time, or given up and counted.
 #include "planners.h"
 
+#include "base/random.h"
 #include "plan/hand.h"
 
 #include <string.h>
@@ -346,6 +347,119 @@ static void test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchang
     }
 }
 
+#define PIECE 40 // strokes
+
+static double uniform(uint64_t *state, double from, double to)
+{
+    return from + (to - from) * himc_random_uniform(state);
+}
+
+static void random_piece(uint64_t *state, himc_stroke *strokes)
+{
+    for (int i = 0; i < PIECE; i++)
+        strokes[i] = (himc_stroke){.beat = (i > 0 ? strokes[i - 1].beat : 0) +
+                                           0.01 * floor(uniform(state, 8, i % 9 ? 40 : 400)),
+                                   .hand = i % 2 ? HIMC_LEFT : HIMC_RIGHT,
+                                   .nuance = (himc_nuance)uniform(state, 0, HIMC_NUANCES),
+                                   .dynamic = uniform(state, 0, 1),
+                                   .spot = HIMC_SPOT_NORMAL};
+}
+
+// one thing about a stroke
+static void edit(uint64_t *state, himc_stroke *s, int what)
+{
+    if (what == 0)
+        s->beat += uniform(state, -0.03, 0.03);
+    else if (what == 1)
+        s->spot = HIMC_SPOT_RIM;
+    else if (what == 2)
+        s->nuance = (himc_nuance)((s->nuance + 1) % HIMC_NUANCES);
+    else
+        s->dynamic = uniform(state, 0, 1);
+}
+
+static himc_planner *of_piece(const himc_stroke *strokes)
+{
+    himc_planner *p = make(60);
+    for (int i = 0; i < PIECE; i++)
+        TEST_ASSERT_TRUE_MESSAGE(himc_planner_add(p, &strokes[i], 0, &error), error.text);
+    return p;
+}
+
+// the tips bounce where the plan touches
+static void play_on(himc_planner *p, double t)
+{
+    himc_planner_advance(p, t);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        himc_target now = himc_planner_target(p, hand, t);
+        himc_stroke s;
+        int drum;
+        double touch;
+        if (himc_planner_current(p, hand, t, &s, &drum, &touch) && touch <= t && touch > t - 0.01) {
+            now.v.z = 0.3 * fabs(now.v.z);
+            himc_planner_separated(p, hand, t, &now);
+        }
+    }
+}
+
+static int exchanged(uint64_t *state, bool human)
+{
+    himc_stroke strokes[PIECE];
+    himc_human player = {.amount = human ? 0.5 : 0, .seed = 3};
+    random_piece(state, strokes);
+    himc_planner_free(planner);
+    planner = of_piece(strokes);
+    int which = (int)uniform(state, 1, PIECE - 1), what = (int)uniform(state, 0, 6);
+    double from = strokes[which].beat - uniform(state, 0.2, 1.6);
+    edit(state, &strokes[which], what);
+    himc_planner *fresh = of_piece(strokes), *other = of_piece(strokes);
+    himc_planner_set_human(planner, player);
+    himc_planner_set_human(fresh, player);
+    himc_planner_play(planner, 0);
+    himc_planner_play(fresh, 0);
+    bool done = false;
+    for (int k = 0; k < 100 * (strokes[PIECE - 1].beat + 1); k++) {
+        double t = 0.01 * k;
+        if (!done && t >= from && !(done = himc_planner_exchange(planner, other)))
+            break;
+        play_on(planner, t);
+        play_on(fresh, t);
+        for (int i = 0; i < HIMC_HANDS && done; i++) {
+            himc_target own = himc_planner_target(planner, (himc_hand)i, t),
+                        its = himc_planner_target(fresh, (himc_hand)i, t);
+            TEST_ASSERT_EQUAL_MEMORY(&its, &own, sizeof own);
+        }
+    }
+    himc_planner_free(fresh);
+    himc_planner_free(other);
+    return done;
+}
+
+static void test_exchanged_strokes_are_played_as_if_they_had_been_there_from_the_start(void)
+{
+    uint64_t state = 7;
+    int count = 0;
+    for (int i = 0; i < 1000; i++)
+        count += exchanged(&state, i % 2);
+    TEST_ASSERT_GREATER_THAN(100, count);
+}
+
+static void test_a_stroke_can_be_exchanged_in_strength_until_it_is_planned(void)
+{
+    himc_planner *other = make(60);
+    use(60);
+    for (int i = 0; i < 8; i++) {
+        add(planner, i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+        add(other, i, HIMC_LEFT, HIMC_LEGATO, i == 4 ? 0.9 : 0.5);
+    }
+    himc_planner_play(planner, 0);
+    advance_to(2.4); // the stroke at 3 s is planned, half a second ahead
+    TEST_ASSERT_EQUAL_DOUBLE(4, himc_planner_rests_to(planner, HIMC_LEFT));
+    TEST_ASSERT_TRUE(himc_planner_exchange(planner, other));
+    himc_planner_free(other);
+}
+
 // a plan that no body could follow is dropped in one line, with its strokes; the next one is played
 static void test_a_plan_faster_than_a_body_is_dropped_and_the_hand_rests(void)
 {
@@ -370,6 +484,8 @@ static void test_a_plan_faster_than_a_body_is_dropped_and_the_hand_rests(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_exchanged_strokes_are_played_as_if_they_had_been_there_from_the_start);
+    RUN_TEST(test_a_stroke_can_be_exchanged_in_strength_until_it_is_planned);
     RUN_TEST(test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchanged);
     RUN_TEST(test_unit_of_the_grip_then_of_the_spot_then_of_the_speed_is_played);
     RUN_TEST(test_hits_at_once_are_played_one_after_the_other);

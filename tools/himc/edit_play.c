@@ -44,10 +44,10 @@ struct edit_play {
     atomic_int *turn; // shared: the playing whose process may write
     int frames[2];    // pipe
     int order[COPIES][2];
-    bool waits[COPIES];   // a copy reads this pipe
-    double rests[COPIES]; // until when its plan rests on strokes (s)
-    bool plays;           // a process writes
-    double apart;         // of the copies (s)
+    bool waits[COPIES];               // a copy reads this pipe
+    double rests[COPIES][HIMC_HANDS]; // until when the plan of each hand rests on strokes (s)
+    bool plays;                       // a process writes
+    double apart;                     // of the copies (s)
     unsigned char *bytes;
     size_t room;
     edit_frame held; // read before it was asked for, if `holds`
@@ -93,7 +93,7 @@ static bool read_all(int from, void *to, size_t size)
 /// What a frame `copy` holds.
 typedef struct copy_frame {
     uint32_t copy;
-    double rests;
+    double rests[HIMC_HANDS];
 } copy_frame;
 
 /// What a waiting copy is told, before the text.
@@ -133,7 +133,9 @@ static void wait_as_copy(player *p)
 // leaves a copy of this process behind
 static void leave_copy(player *p)
 {
-    copy_frame me = {(uint32_t)p->copies, himc_performance_rests_to(p->piece.performance)};
+    copy_frame me = {.copy = (uint32_t)p->copies};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        me.rests[hand] = himc_performance_rests_to(p->piece.performance, (himc_hand)hand);
     pid_t child = fork();
     if (child > 0)
         wait_as_copy(p);
@@ -280,7 +282,7 @@ static bool read_frame(edit_play *play, edit_frame *frame, himc_error *error)
         copy_frame left;
         memcpy(&left, frame->bytes, sizeof left);
         play->waits[left.copy] = true;
-        play->rests[left.copy] = left.rests;
+        memcpy(play->rests[left.copy], left.rests, sizeof left.rests);
     }
     if (!strcmp(frame->kind, "over") || !strcmp(frame->kind, "fail") ||
         !strcmp(frame->kind, "bye!") || !strcmp(frame->kind, "late"))
@@ -397,7 +399,10 @@ bool edit_play_start(edit_play *play, const char *text, edit_span changed, const
     if (changed.from >= 0 && !record)
         copy = (int)fmin((changed.from + HEADROOM) / play->apart, COPIES - 1);
     for (bool late = true; copy >= 0; copy--) {
-        if (!play->waits[copy] || (copy > 0 && play->rests[copy] > changed.strokes))
+        const double *rests = play->rests[copy];
+        bool rest = rests[HIMC_LEFT] > changed.strokes[HIMC_LEFT] ||
+                    rests[HIMC_RIGHT] > changed.strokes[HIMC_RIGHT];
+        if (!play->waits[copy] || (copy > 0 && rest))
             continue;
         if (!dismiss_after(play, copy, error) || !ask(play, copy, text, &late, error))
             return false;

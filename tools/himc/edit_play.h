@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#define EDIT_ALL ((edit_span){-1, -1}) ///< a piece changed everywhere
+#define EDIT_ALL ((edit_span){-1, {-1, -1}}) ///< a piece changed everywhere
 
 /// A piece and the processes that play it. Opaque.
 typedef struct edit_play edit_play;

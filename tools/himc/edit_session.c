@@ -231,7 +231,9 @@ static bool replay(edit_session *s, bool all, himc_error *error)
     edit_span changed = edit_text_changed(s->text);
     if (score && !has_take(score)) {
         changed.from = himc_score_seconds(score->tempi, score->tempo_count, changed.from);
-        changed.strokes = himc_score_seconds(score->tempi, score->tempo_count, changed.strokes);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            changed.strokes[hand] =
+                himc_score_seconds(score->tempi, score->tempo_count, changed.strokes[hand]);
     }
     bool good = text && edit_play_start(s->play, text, all ? EDIT_ALL : changed, NULL, error);
     s->unproved = good;

@@ -212,27 +212,30 @@ static bool may_change(const char *bytes, himc_error *error)
 }
 
 // where a statement begins to act, with its grace notes
-static double acts_from(const char *bytes, bool *push)
+static edit_span span_of(const char *bytes)
 {
     himc_command c;
     himc_error unused;
-    double beat;
-    *push = false;
-    if (!command_of(bytes, &c, &beat, &unused))
-        return HUGE_VAL;
-    *push = c.id == HIMC_COMMAND_PUSH;
-    return *push                        ? beat
-           : c.id == HIMC_COMMAND_NUDGE ? c.atom[1].number - c.atom[2].number
-           : c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0 ? c.stroke.beat
-                                                                    : fmax(c.stroke.beat - 1, 0);
+    edit_span s = {HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
+    if (!command_of(bytes, &c, &s.from, &unused))
+        return (edit_span){HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
+    bool nudge = c.id == HIMC_COMMAND_NUDGE,
+         plain = !nudge && c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0;
+    if (c.id == HIMC_COMMAND_PUSH)
+        return s;
+    s.from = nudge ? c.atom[1].number - c.atom[2].number : fmax(c.stroke.beat - (plain ? 0 : 1), 0);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (!plain || c.stroke.hand >= HIMC_HANDS || (int)c.stroke.hand == hand)
+            s.strokes[hand] = s.from;
+    return s;
 }
 
 static void widen(edit_span *changed, const char *bytes)
 {
-    bool push;
-    double from = acts_from(bytes, &push);
-    changed->from = fmin(changed->from, from);
-    changed->strokes = fmin(changed->strokes, push ? HUGE_VAL : from);
+    edit_span s = span_of(bytes);
+    changed->from = fmin(changed->from, s.from);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        changed->strokes[hand] = fmin(changed->strokes[hand], s.strokes[hand]);
 }
 
 // the place of the change at `changes[i]` gets its bytes, and that gets those of the place
@@ -249,7 +252,7 @@ static void exchange(edit_text *t, int i)
 // takes changes back, or makes them again, until so many are made
 static void go_to(edit_text *t, int done)
 {
-    t->changed = (edit_span){HUGE_VAL, HUGE_VAL};
+    t->changed = (edit_span){HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
     while (t->done > done)
         exchange(t, --t->done);
     while (t->done < done)

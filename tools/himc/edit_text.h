@@ -12,8 +12,9 @@ typedef struct edit_text edit_text;
 
 /// Where a change begins.
 typedef struct edit_span {
-    double from;    ///< anything of it; below 0: everywhere
-    double strokes; ///< all of it but pushes, on which no plan rests
+    double from; ///< anything of it; below 0: everywhere
+    double
+        strokes[HIMC_HANDS]; ///< what is for that hand; for pushes, on which no plan rests: never
 } edit_span;
 
 /// Splits a text (copied). NULL without memory.

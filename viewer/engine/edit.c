@@ -168,9 +168,9 @@ int page_piece_exchange(void)
     return good ? 1 : late ? -1 : 0;
 }
 
-double page_piece_rests_to(void)
+double page_piece_rests_to(int hand)
 {
-    return himc_performance_rests_to(e.player.performance);
+    return himc_performance_rests_to(e.player.performance, (himc_hand)hand);
 }
 
 bool page_piece_cell(void)

@@ -41,7 +41,7 @@ bool PAGE_CALL(page_is_over)(void);
 
 // A piece under edit (edit.c). One instance of the module has its text: lines in and frames out, on
 // the standard output, are those of `himc edit` (docs/viewer.md); a frame `play` is for the page:
-// two times (f64) as edit_play_start() has them, then the text to be played. Another instance plays
+// the times (f64) of an edit_span, then the text to be played. Another instance plays
 // it: a copy of its memory is a copy of the whole state.
 
 /// The piece in the file that is the input, as it was left. False with the reason.
@@ -61,8 +61,9 @@ bool PAGE_CALL(page_piece_begin)(void);
 bool PAGE_CALL(page_piece_start)(void);
 /// Takes the text's strokes: 1. 0 with the reason; -1 if the plan may rest already on what differs.
 int PAGE_CALL(page_piece_exchange)(void);
-/// Until when the plan rests on what differs, if beats stay (s of the score).
-double PAGE_CALL(page_piece_rests_to)(void);
+/// Until when the plan of a hand (himc_hand) rests on strokes, if their beats and places stay (s of
+/// the score).
+double PAGE_CALL(page_piece_rests_to)(int hand);
 /// A fifth of a second, as frames; false where the piece ends.
 bool PAGE_CALL(page_piece_cell)(void);
 /// Tells the rest, and writes the take. False with the reason.

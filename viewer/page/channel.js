@@ -38,6 +38,11 @@ export class Channel {
         this.worker.postMessage({ line });
     }
 
+    // a stroke, its time (s) and hand, has been chosen and may be changed
+    look(...stroke) {
+        this.worker.postMessage({ look: stroke });
+    }
+
     hear({ bytes, written, ended }) {
         if (ended) return this.end(0, ended);
         if (written) return this.keep(written);

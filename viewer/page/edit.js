@@ -407,6 +407,7 @@ export class Editor {
                 one = near.length === 1 ? near[0] : undefined, // the other hand had no time
                 own = near.find(s => s.hand === what.hand) ?? this.ornament(what) ?? one;
             this.chosen = { strike: what, hand: what.hand, time: what.time, statement: own };
+            this.piece.look(what.time, { left: 0, right: 1 }[what.hand]);
             if (!own) this.on.note("No words of the score stand for this stroke.");
         }
         draw(this.ghost, []);

@@ -151,6 +151,10 @@ export class Piece {
         if (this.live) this.socket.send(line);
     }
 
+    look(time, hand) {
+        if (this.live) this.socket.look?.(time, hand);
+    }
+
     // of the source without its ending, as long as a saved file's may be
     get stem() {
         let stem = this.text.source.split("/").pop().replace(/(.)\.[^.]*$/, "$1");

@@ -5,23 +5,28 @@
 // copy as a whole, of each earlier one only the pages of 512 bytes in which it differs from the next. After a change
 // the last copy whose plan does not rest on it comes back, takes the new strokes in place of the old ones, and plays
 // on; if it refuses after all, the one before is asked. So all that follows is, bit by bit, what a playing from the
-// start would be. Where memory is short, copies far from the last change go.
+// start would be. Where memory is short, copies far from the last change go. When a stroke is chosen, and all
+// is played, a copy is made from which its change would be heard soonest.
 const WORD = 4,
     PAGE = 512 / WORD, // (words)
+    BLOCK = 65536 / WORD,
     APART = 1, // (s) of the piece between two copies
     CELL = 0.2, // (s) played at a time
-    ROOM = 120 << 20, // of what the copies differ in (bytes), and less ...
-    ALL = 190 << 20, // ... where a memory and its last copy are larger; chosen: 300 MB with the page
-    FOCUS = 4, // (s) copies get rarer from here on
+    ROOM = 190 << 20, // of a memory, its last copy and what the others differ in (bytes); chosen: 300 MB with the page
+    FOCUS = 4, // (s) copies get rarer from here on ...
+    FAR = 8, // ... to here, where they are three times as far apart
+    BACK = 1.6, // (s) so long before a stroke the plan rarely rests on it
     HEADROOM = 2, // (s) a piece may begin so much later than its first beat
+    HANDS = [0, 1],
     TEXT = "himc-text"; // PAGE_TEXT of viewer/engine/engine.h
 
 // the memory of an instance as it was
 class Copies {
     constructor(memory) {
         ((this.memory = memory), (this.image = new Int32Array(0)));
-        this.list = []; // { at, until when its plan rests on strokes (s), pages that the next one has otherwise: where, words }
-        this.touched = 0; // where the memory was ever used (words)
+        this.list = []; // { at, until when each hand's plan rests on strokes (s), pages that the next one has otherwise: where, words }
+        this.touched = 0; // where the memory was ever used (words) ...
+        this.used = new Set(); // ... and in which blocks
     }
 
     // of what the copies differ in (bytes)
@@ -40,7 +45,7 @@ class Copies {
         const where = this.differing(now);
         if (last) [last.where, last.words] = [where, pagesOf(this.image, where)];
         else this.touched = where.length * PAGE;
-        for (const i of where) this.image.set(now.subarray(i, i + PAGE), i);
+        for (const i of where) (this.image.set(now.subarray(i, i + PAGE), i), this.used.add(i - (i % BLOCK)));
         this.list.push({ at, rests, where: [], words: [] });
     }
 
@@ -61,8 +66,16 @@ class Copies {
     restore() {
         const now = new Int32Array(this.memory.buffer),
             { image } = this;
-        if (now.length > image.length) now.fill(0, image.length);
-        for (const i of this.differing(now.subarray(0, image.length))) now.set(image.subarray(i, i + PAGE), i);
+        for (let at = 0; at < now.length; at += BLOCK)
+            if (this.used.has(at)) now.set(image.subarray(at, at + BLOCK), at);
+            else if (!isZero(now, at)) now.fill(0, at, at + BLOCK);
+    }
+
+    // the memory is that of the copy at an index; all copies stay
+    visit(index) {
+        const now = new Int32Array(this.memory.buffer);
+        this.restore();
+        for (let k = this.list.length - 2; k >= index; k--) this.list[k].where.forEach((at, n) => now.set(pageOf(this.list[k], n), at));
     }
 
     // the one before is the last
@@ -70,14 +83,14 @@ class Copies {
         this.list.pop();
         const last = this.list[this.list.length - 1];
         if (!last) return;
-        last.where.forEach((at, k) => this.image.set(last.words.subarray(k * PAGE, (k + 1) * PAGE), at));
+        last.where.forEach((at, k) => this.image.set(pageOf(last, k), at));
         ((last.where = []), (last.words = []));
     }
 
     // until there is room, without those whose absence costs least
     thin(room, focus) {
         for (const { list } = this; list.length > 3 && this.size > room;) {
-            const cost = i => (list[i + 1].at - list[i - 1].at) / (FOCUS + Math.abs(list[i].at - focus));
+            const cost = i => (list[i + 1].at - list[i - 1].at) / (FOCUS + Math.min(Math.abs(list[i].at - focus), FAR));
             let least = 1;
             for (let i = 2; i < list.length - 1; i++) if (cost(i) < cost(least)) least = i;
             this.join(list[least - 1], list.splice(least, 1)[0]);
@@ -93,9 +106,20 @@ class Copies {
             words = new Int32Array(where.length * PAGE);
         (where.set(copy.where), words.set(copy.words));
         where.set(more.map(k => gone.where[k]), own);
-        more.forEach((k, n) => words.set(gone.words.subarray(k * PAGE, (k + 1) * PAGE), (own + n) * PAGE));
+        more.forEach((k, n) => words.set(pageOf(gone, k), (own + n) * PAGE));
         Object.assign(copy, { where, words });
     }
+}
+
+function isZero(words, at) {
+    const end = at + BLOCK;
+    while (at < end && !(words[at] | words[at + 1] | words[at + 2] | words[at + 3])) at += 4;
+    return at === end;
+}
+
+// the n-th that a copy has otherwise
+function pageOf(copy, n) {
+    return copy.words.subarray(n * PAGE, (n + 1) * PAGE);
 }
 
 // one after another
@@ -110,6 +134,7 @@ class Workshop {
     constructor(module, files, tell, written) {
         Object.assign(this, { module, files, tell, lines: [], order: null, player: null, copies: null });
         ((this.time = 0), (this.focus = 0), (this.over = true));
+        this.chosen = this.ready = null; // a stroke that may be changed; what is played for it
         this.session = this.instance(chunk => this.hear(chunk));
         this.session.files.written = (name, bytes) => name.endsWith(".himc-edit") && written(name, bytes);
     }
@@ -129,7 +154,7 @@ class Workshop {
     // what the text's instance says; orders to play are for here
     hear(chunk) {
         const view = new DataView(chunk.buffer);
-        if (text.decode(chunk.subarray(0, 4)) === "play") this.order = { from: view.getFloat64(8, true), strokes: view.getFloat64(16, true), text: chunk.slice(24) };
+        if (text.decode(chunk.subarray(0, 4)) === "play") this.order = { from: view.getFloat64(8, true), strokes: [16, 24].map(at => view.getFloat64(at, true)), text: chunk.slice(32) };
         else this.tell(chunk);
     }
 
@@ -137,9 +162,14 @@ class Workshop {
         if (!this.ended) this.lines.push(line);
     }
 
+    // a stroke at a time (s) has been chosen
+    look(time, hand) {
+        this.chosen = { time, hands: HANDS.filter(h => hand === undefined || h === hand) };
+    }
+
     // true if there is something to do
     get busy() {
-        return !!this.order || !this.over || this.lines.length > 0;
+        return !!this.order || !this.over || this.lines.length > 0 || (this.chosen !== null && !!this.copies);
     }
 
     // a part of it, some hundredths of a second long
@@ -147,6 +177,7 @@ class Workshop {
         if (this.order) this.begin();
         else if (this.lines.length && this.session.calls.page_edit_proved()) this.obey(this.lines.shift());
         else if (!this.over) this.cell();
+        else if (this.chosen !== null) this.prepare();
     }
 
     obey(line) {
@@ -157,11 +188,12 @@ class Workshop {
     // plays the text that was ordered; from a copy, if only strokes have changed
     begin() {
         const { from, strokes, text } = this.order,
-            { list } = this.copies ?? { list: [] };
+            { list } = this.copies ?? { list: [] },
+            late = ({ at, rests }) => at > from + HEADROOM || HANDS.some(h => rests[h] > strokes[h]);
         ((this.order = null), (this.played = text), (this.focus = Math.max(0, from)));
+        this.takeReady(late);
         for (; from >= 0 && list.length; this.copies.drop()) {
-            const { at, rests } = list[list.length - 1];
-            if ((rests > strokes || at > from + HEADROOM) && list.length > 1) continue;
+            if (late(list[list.length - 1]) && list.length > 1) continue;
             this.copies.restore();
             this.player.files.bytes.set(TEXT, text);
             const done = this.player.calls.page_piece_exchange();
@@ -171,6 +203,40 @@ class Workshop {
         this.start(text);
     }
 
+    // plays towards the chosen stroke, unheard, as near as its plan does not rest on it; and once more, as it
+    // is found out too late
+    prepare() {
+        const { copies, chosen, player } = this,
+            rests = all => chosen.hands.some(h => all[h] > chosen.time);
+        if (this.ready?.chosen !== chosen) {
+            const from = copies.list.findLastIndex(copy => copy.at < chosen.time - CELL && !rests(copy.rests));
+            this.ready = { chosen, from, cells: 0, most: Math.floor((chosen.time - copies.list[Math.max(from, 0)].at) / CELL - 1) };
+            if (from < 0) return (this.chosen = null);
+        }
+        const { ready } = this;
+        if (ready.cells === 0) copies.visit(ready.from);
+        if (ready.cells === ready.most) return ((ready.done = true), (this.chosen = null));
+        ready.at = copies.list[ready.from].at + CELL * ++ready.cells;
+        this.unheard = true;
+        if (ready.at === CELL) player.calls.page_piece_start();
+        player.calls.page_piece_cell();
+        this.unheard = false;
+        if (rests(this.rests)) Object.assign(ready, { cells: 0, most: ready.cells - 1 });
+    }
+
+    // what is ready becomes the last copy, if no stroke has changed on which it rests
+    takeReady(late) {
+        const { copies, ready } = this;
+        this.chosen = this.ready = null;
+        if (!ready?.done || ready.cells === 0 || late({ at: ready.at, rests: this.rests })) return;
+        while (copies.list[copies.list.length - 1].at > ready.at) copies.drop();
+        copies.add(ready.at, this.rests);
+    }
+
+    get rests() {
+        return HANDS.map(this.player.calls.page_piece_rests_to);
+    }
+
     resume() {
         ((this.time = this.copies.list[this.copies.list.length - 1].at), (this.over = false));
         if (this.time === 0) this.player.calls.page_piece_start();
@@ -178,11 +244,11 @@ class Workshop {
 
     start(text) {
         this.player = this.copies = null; // before the next one: they are large
-        this.player = this.instance(this.tell);
+        this.player = this.instance(chunk => this.unheard || this.tell(chunk));
         this.player.files.bytes.set(TEXT, text);
         if (!this.player.call("page_piece_begin", this.name)) return this.failed();
         this.copies = new Copies(this.player.files.memory);
-        this.copies.add(0, 0);
+        this.copies.add(0, [0, 0]);
         this.resume();
     }
 
@@ -200,10 +266,11 @@ class Workshop {
 
     cell() {
         const { copies, player } = this,
-            { list } = copies;
-        if (this.time >= list[list.length - 1].at + APART - CELL / 2) {
-            copies.add(this.time, player.calls.page_piece_rests_to());
-            copies.thin(Math.min(ROOM, ALL - 2 * WORD * copies.touched), this.focus);
+            since = this.time - copies.list[copies.list.length - 1].at,
+            back = this.time - this.focus; // before a change is heard: one copy, for the next one there
+        if (back > 0 ? since > APART - CELL / 2 : since > 0 && Math.abs(back + BACK) < CELL / 2) {
+            copies.add(this.time, this.rests);
+            copies.thin(ROOM - 2 * WORD * copies.touched, this.focus);
         }
         this.over = !player.calls.page_piece_cell();
         this.time += CELL;
@@ -263,9 +330,10 @@ if (typeof WorkerGlobalScope !== "undefined" && self instanceof WorkerGlobalScop
         if (!runs && workshop?.busy) ((runs = true), port1.postMessage(0));
     };
     port2.onmessage = () => ((runs = false), guarded(() => workshop?.busy && workshop.work()));
-    onmessage = ({ data: { begin, line } }) =>
+    onmessage = ({ data: { begin, line, look } }) =>
         guarded(() => {
             if (line !== undefined) return workshop?.line(line);
+            if (look !== undefined) return workshop?.look(...look);
             workshop = new Workshop(
                 begin.wasm instanceof WebAssembly.Module ? begin.wasm : new WebAssembly.Module(begin.wasm),
                 begin.files,

@@ -214,12 +214,11 @@ bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
 {
     static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
                                         "F#", "G",  "G#", "A",  "A#", "B"};
-    double its = -1;
-    for (int key = 0; key < 12 * 10 && its != hz; key++) {
-        snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[key % 12], key / 12);
-        himc_note_frequency(name, &its);
-    }
-    return its == hz;
+    double its = 0, key = round(12 * log2(hz / 440)) + 57;
+    if (!(key >= 0 && key < 12 * 10))
+        return false;
+    snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[(int)key % 12], (int)key / 12 % 10);
+    return himc_note_frequency(name, &its) && its == hz;
 }
 
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)

@@ -87,14 +87,27 @@ static void take_atom(walk *w, const himc_argument *argument, int choice)
     w->at++;
 }
 
+/// Tells what is expected at a token.
+static void describe(const char *token, const char *context, char expected[EXPECTED_SIZE])
+{
+    if (strcmp(token, "...") == 0) {
+        snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
+    } else if (is_argument(token)) {
+        himc_argument_describe(himc_argument_find(token, context), expected, EXPECTED_SIZE);
+        if (strcmp(token, "SPOT") == 0)
+            strncat(expected, " or X Y, both -1 .. 1 m", EXPECTED_SIZE - strlen(expected) - 1);
+    } else {
+        snprintf(expected, EXPECTED_SIZE, "%s", token);
+        for (char *s = expected; *s; s++)
+            *s = *s == '|' ? ' ' : *s;
+    }
+}
+
 /// Takes the next atom if it is one of the words of a token "a|b|c".
-static bool take_word(walk *w, const char *token, char expected[EXPECTED_SIZE])
+static bool take_word(walk *w, const char *token)
 {
     const himc_atom *atom = &w->atom[w->at];
     himc_word word;
-    snprintf(expected, EXPECTED_SIZE, "%s", token);
-    for (char *s = expected; *s; s++)
-        *s = *s == '|' ? ' ' : *s;
     if (atom->kind != HIMC_ATOM_SYMBOL)
         return false;
     for (int choice = 0; (word = cut_word(token, choice)).text[0]; choice++)
@@ -107,12 +120,11 @@ static bool take_word(walk *w, const char *token, char expected[EXPECTED_SIZE])
     return false;
 }
 
-/// Takes the atoms that fit the token; false, and `expected` filled, if the next one does not.
-static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
+/// Takes the atoms that fit the token; false if the next one does not.
+static bool take(walk *w, const char *token)
 {
     if (strcmp(token, "...") == 0) { // all that is left
         const himc_argument *word = himc_argument_find("COMMAND", NULL);
-        snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
         for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
             const himc_atom *atom = &w->atom[w->at];
             bool number = atom->kind == HIMC_ATOM_NUMBER;
@@ -123,15 +135,13 @@ static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
         return true;
     }
     if (!is_argument(token))
-        return take_word(w, token, expected);
+        return take_word(w, token);
     const himc_argument *argument = himc_argument_find(token, w->context);
     const himc_atom *atom = &w->atom[w->at];
     if (strcmp(token, "PART") == 0 && w->at + 1 == w->count)
         return false; // a last word is a drum's
-    himc_argument_describe(argument, expected, EXPECTED_SIZE);
     if (strcmp(token, "SPOT") == 0) {
         const himc_argument *x = himc_argument_find("X", "stroke");
-        strncat(expected, " or X Y, both -1 .. 1 m", EXPECTED_SIZE - strlen(expected) - 1);
         if (w->at + 1 < w->count && atom[0].kind == HIMC_ATOM_NUMBER &&
             atom[1].kind == HIMC_ATOM_NUMBER && himc_argument_accepts(x, &atom[0]) &&
             himc_argument_accepts(x, &atom[1])) {
@@ -149,7 +159,7 @@ static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
 /// Follows one form from `grammar` to its end; returns where the next begins, or NULL.
 static const char *follow(const char *grammar, walk w, attempt *result)
 {
-    char token[WORD_SIZE], expected[EXPECTED_SIZE];
+    char token[WORD_SIZE];
     int least = 0, most = 0;
     bool optional;
     *result = (attempt){.end = FITS, .forms = 1};
@@ -159,14 +169,15 @@ static const char *follow(const char *grammar, walk w, attempt *result)
         most += 1 + (strcmp(token, "SPOT") == 0);
         if (result->end != FITS || (optional && w.at == w.count))
             continue;
-        bool taken = w.at < w.count && take(&w, token, expected);
+        bool taken = w.at < w.count && take(&w, token);
         // an optional word may be left out when something else may follow
         bool skip = optional && *grammar && w.at < w.count && w.atom[w.at].kind == HIMC_ATOM_SYMBOL;
         if (taken || skip)
             continue;
         result->end = w.at == w.count ? MISSING : WRONG;
-        snprintf(result->name, sizeof result->name, "%s", token);
-        snprintf(result->expected, sizeof result->expected, "%s", w.at == w.count ? "" : expected);
+        memcpy(result->name, token, sizeof token);
+        if (w.at < w.count)
+            describe(token, w.context, result->expected);
     }
     if (result->end == FITS && w.at < w.count)
         result->end = TOO_MANY;

@@ -33,6 +33,22 @@ void himc_feet_clear(performance_feet *feet)
     feet->played_to = -1;
 }
 
+static bool same(const foot_stroke *a, const foot_stroke *b)
+{
+    return a->beat == b->beat && a->x == b->x && a->y == b->y && a->velocity == b->velocity &&
+           a->drum == b->drum && a->nuance == b->nuance;
+}
+
+bool himc_feet_may_exchange(const performance_feet *feet, const performance_feet *other)
+{
+    int i = 0, most = feet->count > other->count ? feet->count : other->count;
+    while (i < feet->count && i < other->count && same(&feet->stroke[i], &other->stroke[i]))
+        i++;
+    double own = i < feet->count ? feet->stroke[i].beat : HUGE_VAL,
+           its = i < other->count ? other->stroke[i].beat : HUGE_VAL;
+    return i == most || fmin(own, its) >= feet->played_to;
+}
+
 void himc_feet_exchange(performance_feet *a, performance_feet *b)
 {
     performance_feet own = *a;

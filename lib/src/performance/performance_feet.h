@@ -34,7 +34,9 @@ typedef struct performance_feet {
 
 void himc_feet_free(performance_feet *feet);
 HIMC_RT void himc_feet_clear(performance_feet *feet);
-/// Exchanges the strokes of two scores.
+/// True if those that have been played are the same in two scores ...
+HIMC_RT bool himc_feet_may_exchange(const performance_feet *feet, const performance_feet *other);
+/// ... whose strokes are exchanged.
 HIMC_RT void himc_feet_exchange(performance_feet *a, performance_feet *b);
 /// Adds a stroke on a drum. False with the reason if there is no memory, or no foot plays it: an
 /// ornament, a place off the head.

@@ -649,23 +649,24 @@ bool himc_performance_load_unheard(himc_performance *p, const char *text, const 
     return himc_job_carry_out(job, error);
 }
 
-double himc_performance_rests_to(const himc_performance *p)
+double himc_performance_rests_to(const himc_performance *p, himc_hand hand)
 {
     return p->motion->track ? himc_motion_take_time(p->motion, step_time(p))
-                            : himc_planner_rests_to(p->motion->planner);
+                            : himc_planner_rests_to(p->motion->planner, hand);
 }
 
 bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *other)
 {
     const performance_body *with = other->body;
     himc_track *track = p->motion->track;
+    performance_feet *feet = &p->motion->feet, *others = &other->motion->feet;
     bool good = himc_body_may_exchange_pushes(p->body, with->planned, with->planned_count) &&
+                (track || himc_feet_may_exchange(feet, others)) &&
                 (track ? himc_track_exchange(track, other->motion->track,
                                              himc_motion_take_time(p->motion, step_time(p)))
                        : himc_planner_exchange(p->motion->planner, other->motion->planner));
-    if (good && !track) {
-        himc_feet_exchange(&p->motion->feet, &other->motion->feet);
-    }
+    if (good && !track)
+        himc_feet_exchange(feet, others);
     if (good)
         himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);
     himc_performance_find_end(p);

@@ -443,7 +443,7 @@ static int common_beats(const planner_part *a, const planner_part *b)
 }
 
 /// True if a hand's plan so far is the same with the strokes of `other`.
-static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_score *other)
+static bool may_exchange(himc_planner *planner, himc_hand hand, const planner_score *other)
 {
     const planner_score *score = &planner->score;
     const planner_part *part = &score->part[hand], *fresh = &other->part[hand];
@@ -454,16 +454,18 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
         return false;
     if (!score->playing)
         return true;
-    int index, same = himc_planner_score_common(part, fresh);
+    int index, next = part->listed.number, same = himc_planner_score_common(part, fresh);
     double to = himc_planner_looked_to(planner, hand, &index),
            time = fmin(part_time(score, part, same), part_time(score, fresh, same));
-    bool ends = same == part->count || same == fresh->count;
+    bool ends = same == part->count || same == fresh->count, open = same >= part->looked;
     if (time == HUGE_VAL) // they are the same
         return true;
+    open = open && same == next && !ends && part->list[same].settled == 0 &&
+           part->list[same].drum == fresh->list[same].drum &&
+           himc_planner_may_be_next(planner, &part->list[same].stroke, &fresh->list[same].stroke,
+                                    part->list[same].drum);
     // a hand that has nothing more to play goes home
-    if (same < index && (ends || time < to))
-        return false;
-    if (same == index && time < to)
+    if (!open && same < index && (time < to || (ends && same <= next) || same < part->looked))
         return false;
     // variation depends on the time to the neighbours in both hands: to the last ones looked at
     same = common_beats(part, fresh);
@@ -476,16 +478,22 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
     return true;
 }
 
-double himc_planner_rests_to(const himc_planner *planner)
+double himc_planner_rests_to(himc_planner *planner, himc_hand hand)
 {
     const planner_score *score = &planner->score;
-    double rests = 0;
-    for (int i = 0; i < HIMC_HANDS && score->playing; i++) {
-        int index;
-        double to = himc_planner_looked_to(planner, (himc_hand)i, &index);
-        rests = fmax(rests, fmin(to, part_time(score, &score->part[i], index)) - score->origin);
+    const planner_part *part = &score->part[hand];
+    int index, next = part->listed.number;
+    double to = himc_planner_looked_to(planner, hand, &index);
+    if (!score->playing) // before the beginning on none, after the end on all
+        return score->starts > 0 ? HUGE_VAL : 0;
+    if (next >= part->looked && next < part->count) {
+        himc_stroke softest = part->list[next].stroke;
+        softest.dynamic = 0;
+        if (himc_planner_may_be_next(planner, &part->list[next].stroke, &softest,
+                                     part->list[next].drum))
+            index = next;
     }
-    return rests;
+    return fmin(to, part_time(score, part, index)) - score->origin;
 }
 
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other)

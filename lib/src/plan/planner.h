@@ -122,9 +122,9 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
 /// or after the end.
 /// Before `play` the plan rests on none.
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
-/// Until when the plan so far rests on strokes (s of the score): later ones can be exchanged, if
-/// their beats stay.
-double himc_planner_rests_to(const himc_planner *planner);
+/// From when on a hand's strokes can be exchanged by now (s of the score), if their beats and
+/// places stay.
+double himc_planner_rests_to(himc_planner *planner, himc_hand hand);
 /// Drops all strokes; moving sticks come to rest. Stops and goes to beat 0, but a loop that plays
 /// turns on, and begins again on a whole beat when strokes are added.
 void himc_planner_clear(himc_planner *planner);

@@ -245,9 +245,21 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
     return text;
 }
 
-/// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c). The
-/// first stroke of a fast run is one of it: a stroke gives way to the next one by as much as that
-/// one, or this one if it is softer, loses by the time between them.
+/// The share of its speed that a stroke keeps for the sake of the one after it: as much as that
+/// one, or this one if it is softer, keeps with the time between them. So the first stroke of a
+/// fast run is one of it.
+static double kept_before(const timed_stroke *s, const himc_goal *after)
+{
+    himc_gesture softer = after->gesture;
+    double time = after->time - s->goal.time - s->goal.hold;
+    if (!(time > 0))
+        return 1;
+    softer.speed = fmin(softer.speed, s->own);
+    double hurry = himc_goal_hurry(s->goal.spot, after->spot);
+    return himc_gesture_bend(softer, hurry * time).speed / softer.speed;
+}
+
+/// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c).
 static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[s->stroke.hand];
@@ -260,15 +272,9 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
     }
     himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, most);
     timed_stroke after;
-    s->gives_way = false;
-    if (!next_written(planner, s->stroke.hand, &after))
-        return g;
-    double time = after.written.time - s->goal.time - s->goal.hold;
-    if (!(time > 0))
-        return g;
-    himc_gesture other = after.written.gesture, softer = own.speed < other.speed ? own : other;
-    double hurry = himc_goal_hurry(s->goal.spot, after.written.spot);
-    double share = himc_gesture_bend(softer, hurry * time).speed / softer.speed;
+    s->own = own.speed;
+    bool more = next_written(planner, s->stroke.hand, &after);
+    double share = more ? kept_before(s, &after.written) : 1;
     s->gives_way = share * own.speed < g.speed;
     return s->gives_way ? himc_gesture_scale(own, share) : g;
 }
@@ -571,6 +577,14 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     return true;
 }
 
+/// A stroke has been looked at out of turn.
+static void look_at(himc_planner *planner, himc_hand hand, const planner_place *place)
+{
+    planner_part *part = &planner->score.part[hand];
+    if (place->roll < 0 && place->number >= part->looked)
+        part->looked = place->number + 1;
+}
+
 /// The other hand takes a stroke of the score, if it has nothing to do and is near enough; in a
 /// hurry if it must, else its plan ends as early as it can.
 static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
@@ -579,6 +593,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     planner_hand *h = &planner->hand[other];
     double from = planner->now + PLANNER_AHEAD;
     timed_stroke taken = *s;
+    planner_due due;
     if (s->reassigned || s->place.number < 0)
         return false;
     if (h->plan.end < from)
@@ -591,6 +606,11 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     double t = taken.goal.time, gap = t;
     bool in_time = hurries ? himc_hand_can_strike(&h->plan, &taken.goal)
                            : t >= h->plan.end + himc_hand_least_time(&h->plan, &taken.goal);
+    for (int i = 0; himc_planner_score_next(&planner->score, other, i, &due); i++) {
+        look_at(planner, other, &due.place);
+        if (due.time > t + HIT_GAP)
+            break;
+    }
     bool can = h->waiting_count < PLANNER_WAITING &&
                himc_planner_reaches(planner, other, taken.goal.spot) &&
                himc_planner_find_gap(planner, other, &gap) && gap == t && in_time &&
@@ -643,9 +663,38 @@ void himc_planner_replan(himc_planner *planner, double t)
 
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
 {
-    *index =
-        planner->score.part[hand].listed.number + 1; // the next stroke and the one that follows it
+    const planner_score *score = &planner->score;
+    const planner_part *part = &score->part[hand];
+    int next = part->listed.number;
+    // a stroke that bounces leaves time to the one after it; rolls are among both
+    bool bounces = next < part->count && part->list[next].stroke.bounces > 0;
+    *index = next + (bounces || score->roll_count > 0 ? 2 : 1);
+    *index = part->looked > *index ? part->looked : *index;
     return planner->hand[hand].plan.end + PREPARED_AHEAD + PREPARED_MARGIN;
+}
+
+bool himc_planner_may_be_next(himc_planner *planner, const himc_stroke *a, const himc_stroke *b,
+                              int drum)
+{
+    const himc_stroke *either[] = {a, b};
+    const planner_hand *h = &planner->hand[a->hand];
+    himc_stroke as_a = *b;
+    as_a.nuance = a->nuance;
+    as_a.dynamic = a->dynamic;
+    if (!himc_planner_score_same(a, &as_a) || a->bounces > 0)
+        return false;
+    bool silent = planner->notes.silent, good = true;
+    double kept[2] = {1, 1}, time = himc_planner_score_touch(&planner->score, 0, a);
+    planner->notes.silent = true;
+    for (int i = 0; i < 2 && h->planned_count > 0; i++) {
+        const timed_stroke *before = &h->planned[h->planned_count - 1];
+        himc_goal goal = himc_planner_goal(planner, either[i], drum, time);
+        kept[i] = kept_before(before, &goal);
+        good = good && himc_hand_can_strike(&h->plan, &goal) &&
+               himc_hand_can_follow(&before->goal, &goal);
+    }
+    planner->notes.silent = silent;
+    return good && kept[0] == kept[1];
 }
 
 double himc_planner_lateness(himc_planner *planner)

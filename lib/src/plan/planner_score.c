@@ -244,6 +244,7 @@ void himc_planner_score_start(planner_score *score, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_from(&score->part[hand], score->beat);
         score->part[hand].listed = (planner_place){-1, next, 0};
+        score->part[hand].looked = 0;
         himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
 }

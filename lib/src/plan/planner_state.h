@@ -35,6 +35,7 @@ typedef struct timed_stroke {
     int drum;
     planner_place place; ///< in the hand's part of the score; of a hit or a reassigned stroke none
     bool gives_way;      ///< it is softer for the stroke after it
+    double own;          ///< speed of impact before it gave way to any (m/s)
     bool reassigned;     ///< it is from the other hand's part of the score
     bool separated;      ///< the tip has left the head again
     double asked;        ///< speed of impact that was asked for (m/s)
@@ -202,9 +203,13 @@ HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// A line: this stroke of a loop is left out of the round under way.
 HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
-/// The hand's plan so far rests on no stroke of its part after this time (s); *index is that of the
-/// last one that has been looked at, if it is before that time.
+/// The hand's plan so far rests on no stroke of its part after this time (s), nor on those from
+/// *index on; nor on the one that it plans next, with himc_planner_may_be_next.
 HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);
+/// True if a hand's plan so far is the same with either of two strokes (on `drum`) as the one that
+/// it plans next: they differ in strength, and leave the one before them as it is.
+bool himc_planner_may_be_next(himc_planner *planner, const himc_stroke *a, const himc_stroke *b,
+                              int drum);
 /// How much too late the hands would be for their next strokes (s); 0 if they are not.
 HIMC_RT double himc_planner_lateness(himc_planner *planner);
 
