@@ -1,8 +1,9 @@
-"""What the page needs on this machine: until it is there, from the click to the sound, speed, misses.
+"""What the page needs on this machine: until it is there, from the click and from an edit to the sound, speed, misses.
 
 bench.py PAGE.html [SECONDS]    the last: how long tide is played with its picture
 """
 
+import os
 import sys
 import time
 
@@ -31,6 +32,30 @@ return new Promise(done => {
     worker.postMessage([files[0][1], name, files.find(([n]) => n === name)[1]]);
 });
 """
+EDITS = 12  # of strokes all over tide, each half a second after it was chosen
+CHOOSE = """
+const { piece } = viewer.editor, { strikes } = piece.scene;
+viewer.playback.play(false);
+viewer.editor.choose(strikes[Math.floor(arguments[0] * strikes.length)]);
+"""
+CHANGE = """
+viewer.playback.play(true);
+viewer.editor.heard.length = 0;
+viewer.editor.commit({ dynamic: arguments[0] });
+"""
+
+
+def renderers():
+    """Numbers of the processes that have pages."""
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{pid}/cmdline", "rb") as file:
+                if b"--type=renderer" in file.read():
+                    yield pid
+        except OSError:  # it has just ended
+            pass
+
+
 browser = Browser(1280, 720)
 try:
     began = time.time()
@@ -51,7 +76,20 @@ try:
     stats = browser.run("const s = viewer.sound.context.playbackStats; return s ? s.underrunEvents : null")
     print(f"tide with picture, {seconds:g} s: buffer empty {browser.run(told) - before} times, device under-runs {stats}")
     print(f"frames a second {browser.run('return viewer.numbers.fps'):.1f}")
-    browser.run("viewer.held = true; viewer.studio.worker.terminate()")
+    browser.run("document.getElementById('p-edit').click()")
+    took = []
+    for edit in range(EDITS):
+        browser.wait("return viewer.editor?.piece.over", 120)
+        browser.run(CHOOSE, (0.5 + 7 * edit) / EDITS % 1)
+        time.sleep(0.5)
+        browser.run(CHANGE, (0.3 + 0.618 * edit) % 1)
+        browser.wait("return viewer.editor.heard.length")
+        took.append(browser.run("return viewer.editor.heard[0]") / 1000)
+    took.sort()
+    print(f"tide edited, {EDITS} times: heard after {took[EDITS // 2]:.2f} s (median), {took[0]:.2f} to {took[-1]:.2f}", end=", ")
+    memory = sum(int(line.split()[1]) for pid in renderers() for line in open(f"/proc/{pid}/smaps_rollup") if line.startswith("Pss:"))
+    print(f"the page has {memory / 1024:.0f} MB")
+    browser.run("viewer.editor.piece.leave(); viewer.held = true; viewer.studio.worker.terminate()")
     with open("tests/page/hash.js") as file:
         code = file.read()
     for name in ("improvisation.txt", "tide.txt"):

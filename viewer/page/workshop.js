@@ -12,7 +12,7 @@ const WORD = 4,
     BLOCK = 65536 / WORD,
     APART = 1, // (s) of the piece between two copies
     CELL = 0.2, // (s) played at a time
-    ROOM = 190 << 20, // of a memory, its last copy and what the others differ in (bytes); chosen: 300 MB with the page
+    ROOM = 190 << 20, // of a memory, its last copy and what the others differ in (bytes); chosen: half of what the page has
     FOCUS = 4, // (s) copies get rarer from here on ...
     FAR = 8, // ... to here, where they are three times as far apart
     BACK = 1.6, // (s) so long before a stroke the plan rarely rests on it
@@ -135,6 +135,7 @@ class Workshop {
         Object.assign(this, { module, files, tell, lines: [], order: null, player: null, copies: null });
         ((this.time = 0), (this.focus = 0), (this.over = true));
         this.chosen = this.ready = null; // a stroke that may be changed; what is played for it
+        this.rested = []; // what the plan rested on at each cell
         this.session = this.instance(chunk => this.hear(chunk));
         this.session.files.written = (name, bytes) => name.endsWith(".himc-edit") && written(name, bytes);
     }
@@ -203,32 +204,31 @@ class Workshop {
         this.start(text);
     }
 
-    // plays towards the chosen stroke, unheard, as near as its plan does not rest on it; and once more, as it
-    // is found out too late
+    // plays towards the chosen stroke, unheard, from a copy to where its plan does not rest on it yet
     prepare() {
         const { copies, chosen, player } = this,
-            rests = all => chosen.hands.some(h => all[h] > chosen.time);
+            open = rests => chosen.hands.every(h => rests[h] <= chosen.time);
         if (this.ready?.chosen !== chosen) {
-            const from = copies.list.findLastIndex(copy => copy.at < chosen.time - CELL && !rests(copy.rests));
-            this.ready = { chosen, from, cells: 0, most: Math.floor((chosen.time - copies.list[Math.max(from, 0)].at) / CELL - 1) };
-            if (from < 0) return (this.chosen = null);
+            const index = copies.list.findLastIndex(({ at, rests }) => at < chosen.time && open(rests)),
+                { at } = copies.list[Math.max(index, 0)],
+                cells = this.rested.findLastIndex((rests, cell) => CELL * cell < chosen.time && open(rests)) - Math.round(at / CELL);
+            if (index < 0 || cells <= 0) return (this.chosen = null);
+            copies.visit(index);
+            this.ready = { chosen, at, cells };
+            if (at === 0) player.calls.page_piece_start();
         }
-        const { ready } = this;
-        if (ready.cells === 0) copies.visit(ready.from);
-        if (ready.cells === ready.most) return ((ready.done = true), (this.chosen = null));
-        ready.at = copies.list[ready.from].at + CELL * ++ready.cells;
         this.unheard = true;
-        if (ready.at === CELL) player.calls.page_piece_start();
         player.calls.page_piece_cell();
         this.unheard = false;
-        if (rests(this.rests)) Object.assign(ready, { cells: 0, most: ready.cells - 1 });
+        this.ready.at += CELL;
+        if (--this.ready.cells === 0) this.chosen = null;
     }
 
-    // what is ready becomes the last copy, if no stroke has changed on which it rests
+    // what is ready, or so far, becomes the last copy, if no stroke has changed on which it rests
     takeReady(late) {
         const { copies, ready } = this;
         this.chosen = this.ready = null;
-        if (!ready?.done || ready.cells === 0 || late({ at: ready.at, rests: this.rests })) return;
+        if (!ready || late({ at: ready.at, rests: this.rests })) return;
         while (copies.list[copies.list.length - 1].at > ready.at) copies.drop();
         copies.add(ready.at, this.rests);
     }
@@ -268,6 +268,7 @@ class Workshop {
         const { copies, player } = this,
             since = this.time - copies.list[copies.list.length - 1].at,
             back = this.time - this.focus; // before a change is heard: one copy, for the next one there
+        this.rested[Math.round(this.time / CELL)] = this.rests;
         if (back > 0 ? since > APART - CELL / 2 : since > 0 && Math.abs(back + BACK) < CELL / 2) {
             copies.add(this.time, this.rests);
             copies.thin(ROOM - 2 * WORD * copies.touched, this.focus);
