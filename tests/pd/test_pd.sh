@@ -397,7 +397,7 @@ memory() { # memory COUNT: the least Pd holds, patch closed, soon after opening 
 }
 early=$(memory 100)
 # what the allocator holds free comes and goes; what is lost stays
-late=$(for count in 700 730 760; do memory $count; done | sort -n | head -n 1)
+late=$(for count in 640 665 690 715 740 765; do memory $count; done | sort -n | head -n 1)
 kill $pd
 wait $pd 2>"$work/killed"
 # less than 25 kB an opening; what is free may be in one place more, 7.5 MB of a patch

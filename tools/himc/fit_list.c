@@ -1,5 +1,6 @@
-/// fit_list.c: partials as a list of modes: all of one mass, with shape 1 everywhere, so that only
-/// the pressure of each says how loud it is.
+/// fit_list.c: partials as a list of modes: all of one mass, with shape 1 or -1 everywhere, so that
+/// only the pressure of each says how loud it is. The signs are such that what all send together
+/// while the mallet pushes cancels: else a list clicks, 40 dB over what then rings.
 ///
 /// The pressures follow from one blow on a list in which all are alike: what its partials are
 /// louder or softer than those found is taken back, twice, since near ones hide each other. All
@@ -15,7 +16,8 @@
 
 #define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
 #define MASS 0.1      // (kg) per mode: what all have together where it is struck, three mallets'
-#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest; chosen: as loud as lists.c and drums
+#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest; at first
+#define PEAK 0.2      // of a stroke mf; chosen: it is as loud as a drum's, and ff does not clip
 #define ROUNDS 2
 #define CLEAR 0.0           // (dB) a partial less clear is the room's
 #define NEAR 1.5            // (Hz)
@@ -31,9 +33,12 @@ typedef struct list {
     const partial *of[MODES];
     double pressure[MODES], t60[MODES];
     int count;
+    double louder; // all of them
 } list;
 
-static bool hear(const cli_file *file, double rate, partials_sound *out, himc_error *error)
+// a stroke mf in free air; `peak`: its largest sample
+static bool hear(const cli_file *file, double rate, partials_sound *out, double *peak,
+                 himc_error *error)
 {
     const char *path = file->temp[0] ? file->temp : file->path;
     size_t frames = (size_t)((BEAT + SECONDS) * rate);
@@ -52,7 +57,7 @@ static bool hear(const cli_file *file, double rate, partials_sound *out, himc_er
                 cli_tell(p, "stroke 1 right legato mf", NULL, error) &&
                 cli_tell(p, "play", NULL, error);
     if (good)
-        himc_performance_read(p, heard, 2, (int)frames);
+        *peak = himc_performance_read(p, heard, 2, (int)frames);
     else if (!heard)
         himc_error_set(error, "out of memory");
     good = good && partials_add(out, heard, frames, 2, rate, "the instrument made", error);
@@ -63,7 +68,7 @@ static bool hear(const cli_file *file, double rate, partials_sound *out, himc_er
 
 static bool write(const list *l, double radius, const char *path, cli_file *file, himc_error *error)
 {
-    double loudest = 0, strongest = -INFINITY, pitch = 0;
+    double loudest = 0, sum = 0, strongest = -INFINITY, pitch = 0;
     cli_file_drop(file);
     if (!cli_file_open(file, path, error))
         return false;
@@ -75,10 +80,14 @@ static bool write(const list *l, double radius, const char *path, cli_file *file
     fprintf(file->stream,
             "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n", pitch,
             radius);
-    for (int i = 0; i < l->count; i++)
-        fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
-                fmax(1e-12, PRESSURE * l->count * l->pressure[i] / loudest), l->of[i]->frequency,
-                fmin(l->t60[i], 60), MASS * l->count);
+    for (int i = 0; i < l->count; i++) {
+        double p = PRESSURE * l->count * l->louder * l->pressure[i] / loudest;
+        bool against = sum > 0;
+        sum += against ? -p : p;
+        fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g %s\n", fmin(fmax(1e-12, p), 1),
+                l->of[i]->frequency, fmin(l->t60[i], 60), MASS * l->count,
+                against ? "-1 -1" : "1 1");
+    }
     return cli_file_close(file, error);
 }
 
@@ -147,21 +156,24 @@ static double correct(list *l, const partials_list *made)
 bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
               const char *path, cli_file *file, partials_list *made, himc_error *error)
 {
-    list l = {.count = 0};
+    double peak;
+    list l = {.louder = 1};
     choose(found, &l);
     if (l.count == 0)
         return himc_error_set(error,
                               "no partial is clear of the noise, expected a sound that rings");
     for (int round = 0;; round++) {
         partials_sound heard = {.tracks = 0};
-        bool good = write(&l, radius, path, file, error) &&
-                    hear(file, sound->rate < LOWEST_RATE ? RATE : sound->rate, &heard, error) &&
-                    partials_find(&heard, FIT_LIST_HIGHEST, made, error);
+        bool good =
+            write(&l, radius, path, file, error) &&
+            hear(file, sound->rate < LOWEST_RATE ? RATE : sound->rate, &heard, &peak, error) &&
+            partials_find(&heard, FIT_LIST_HIGHEST, made, error);
         made->room = found->room; // what beats there is a line here as well
         if (good)
             partials_lines(&heard, made);
         partials_sound_free(&heard);
+        l.louder *= good && peak > 0 ? PEAK / peak : 1;
         if (!good || round == ROUNDS || correct(&l, made) < ALIKE)
-            return good;
+            return good && write(&l, radius, path, file, error);
     }
 }

@@ -245,16 +245,16 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
     return text;
 }
 
-/// The share of its speed that a stroke keeps for the sake of the one after it: as much as that
+/// The share of its `speed` that a stroke keeps for the sake of the one after it: as much as that
 /// one, or this one if it is softer, keeps with the time between them. So the first stroke of a
 /// fast run is one of it.
-static double kept_before(const timed_stroke *s, const himc_goal *after)
+static double kept_before(const timed_stroke *s, double speed, const himc_goal *after)
 {
     himc_gesture softer = after->gesture;
     double time = after->time - s->goal.time - s->goal.hold;
     if (!(time > 0))
         return 1;
-    softer.speed = fmin(softer.speed, s->own);
+    softer.speed = fmin(softer.speed, speed);
     double hurry = himc_goal_hurry(s->goal.spot, after->spot);
     return himc_gesture_bend(softer, hurry * time).speed / softer.speed;
 }
@@ -272,9 +272,8 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
     }
     himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, most);
     timed_stroke after;
-    s->own = own.speed;
     bool more = next_written(planner, s->stroke.hand, &after);
-    double share = more ? kept_before(s, &after.written) : 1;
+    double share = more ? kept_before(s, own.speed, &after.written) : 1;
     s->gives_way = share * own.speed < g.speed;
     return s->gives_way ? himc_gesture_scale(own, share) : g;
 }
@@ -689,8 +688,8 @@ bool himc_planner_may_be_next(himc_planner *planner, const himc_stroke *a, const
     for (int i = 0; i < 2 && h->planned_count > 0; i++) {
         const timed_stroke *before = &h->planned[h->planned_count - 1];
         himc_goal goal = himc_planner_goal(planner, either[i], drum, time);
-        kept[i] = kept_before(before, &goal);
-        good = good && himc_hand_can_strike(&h->plan, &goal) &&
+        kept[i] = kept_before(before, before->asked, &goal);
+        good = good && before->stroke.bounces == 0 && himc_hand_can_strike(&h->plan, &goal) &&
                himc_hand_can_follow(&before->goal, &goal);
     }
     planner->notes.silent = silent;

@@ -35,7 +35,6 @@ typedef struct timed_stroke {
     int drum;
     planner_place place; ///< in the hand's part of the score; of a hit or a reassigned stroke none
     bool gives_way;      ///< it is softer for the stroke after it
-    double own;          ///< speed of impact before it gave way to any (m/s)
     bool reassigned;     ///< it is from the other hand's part of the score
     bool separated;      ///< the tip has left the head again
     double asked;        ///< speed of impact that was asked for (m/s)
