@@ -274,6 +274,24 @@ def test_no_hand_is_blamed_for_the_distance_of_both():
     assert told[0][0]["what"] == told[1][0]["what"], told
 
 
+def test_three_soft_accents_are_one_fault():
+    text, strokes = lesson_takes.score()
+    for i in range(24):  # of six accents three
+        if i % 8 == 4:
+            text = text.replace(f"stroke {1 + i / 2:g} {HANDS[(i + 1) % 2]} accent", f"stroke {1 + i / 2:g} {HANDS[(i + 1) % 2]} legato")
+            next(s for s in strokes if s["beat"] == 1 + i / 2)["nuance"] = "legato"
+    loud, own = lesson_takes.speed_of, lesson_takes.score
+    try:
+        lesson_takes.score = lambda: (text, strokes)
+        lesson_takes.speed_of = lambda s: loud(s) * (0.63 if s["nuance"] == "accent" else 1)
+        lesson_takes.make(path("take.csv"), "none", 120, FIRST_SEED)
+    finally:
+        lesson_takes.score, lesson_takes.speed_of = own, loud
+    status, out, err = lesson(path("accents.txt", text), path("take.csv"), "--json", "--up", "z")
+    what = [f["what"] for f in json.loads(out)["faults"]]
+    assert status == 0 and len(what) == 1 and what[0].startswith("The strokes marked accent are "), (what, err)
+
+
 def test_a_cut_take_is_told_once():
     rows, beat = model_motion(), 60 / 90
     first = next(row[0] for low, row in zip(rows[1:], rows) if row[6] < 0.87 and low[6] > row[6] or row[3] < 0.87 and low[3] > row[3])

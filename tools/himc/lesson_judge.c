@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FEWEST 3   // strokes of a group, beside LESSON_FEWEST others; chosen: a phrase's accents
 #define SINGLE 4.0 // standard deviations of a single stroke; chosen: 1 of 16000 is further off
 
 // Thresholds of listeners, and where no one has published any, what himc itself counts as right.
@@ -86,7 +87,7 @@ static difference compare(const lesson_course *c, const int *group, int kind, in
     double variance = 0;
     for (int k = 0; k < c->n; k++)
         group[k] == id ? d.in++ : d.out++;
-    for (int axis = 0; axis < axes && d.in >= LESSON_FEWEST && d.out >= LESSON_FEWEST; axis++) {
+    for (int axis = 0; axis < axes && d.in >= FEWEST && d.out >= LESSON_FEWEST; axis++) {
         double sum[2] = {0}, ss[2] = {0};
         int n[2] = {d.out, d.in};
         for (int k = 0; k < c->n; k++)
