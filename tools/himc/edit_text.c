@@ -211,18 +211,22 @@ static bool may_change(const char *bytes, himc_error *error)
                             "expected, in an edit, strokes, ornaments, nudge, at BEAT push")));
 }
 
+static const edit_span NOWHERE = {HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
+
 // where a statement begins to act, with its grace notes
 static edit_span span_of(const char *bytes)
 {
     himc_command c;
     himc_error unused;
-    edit_span s = {HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
-    if (!command_of(bytes, &c, &s.from, &unused))
-        return (edit_span){HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
-    bool nudge = c.id == HIMC_COMMAND_NUDGE,
-         plain = !nudge && c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0;
+    double beat;
+    edit_span s = NOWHERE;
+    if (!command_of(bytes, &c, &beat, &unused))
+        return s;
+    s.from = beat;
     if (c.id == HIMC_COMMAND_PUSH)
         return s;
+    bool nudge = c.id == HIMC_COMMAND_NUDGE,
+         plain = !nudge && c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0;
     s.from = nudge ? c.atom[1].number - c.atom[2].number : fmax(c.stroke.beat - (plain ? 0 : 1), 0);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (!plain || c.stroke.hand >= HIMC_HANDS || (int)c.stroke.hand == hand)
@@ -252,7 +256,7 @@ static void exchange(edit_text *t, int i)
 // takes changes back, or makes them again, until so many are made
 static void go_to(edit_text *t, int done)
 {
-    t->changed = (edit_span){HUGE_VAL, {HUGE_VAL, HUGE_VAL}};
+    t->changed = NOWHERE;
     while (t->done > done)
         exchange(t, --t->done);
     while (t->done < done)

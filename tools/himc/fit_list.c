@@ -16,7 +16,7 @@
 
 #define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
 #define MASS 0.1      // (kg) per mode: what all have together where it is struck, three mallets'
-#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest; at first
+#define PRESSURE 2e-4 // (Pa s^2/m) per mode, of the loudest, at first; chosen
 #define PEAK 0.2      // of a stroke mf; chosen: it is as loud as a drum's, and ff does not clip
 #define ROUNDS 2
 #define CLEAR 0.0           // (dB) a partial less clear is the room's
@@ -33,7 +33,7 @@ typedef struct list {
     const partial *of[MODES];
     double pressure[MODES], t60[MODES];
     int count;
-    double louder; // all of them
+    double louder; // factor of all pressures
 } list;
 
 // a stroke mf in free air; `peak`: its largest sample
@@ -173,7 +173,8 @@ bool fit_list(const partials_sound *sound, const partials_list *found, double ra
             partials_lines(&heard, made);
         partials_sound_free(&heard);
         l.louder *= good && peak > 0 ? PEAK / peak : 1;
+        list tried = l; // but for its loudness
         if (!good || round == ROUNDS || correct(&l, made) < ALIKE)
-            return good && write(&l, radius, path, file, error);
+            return good && write(&tried, radius, path, file, error);
     }
 }

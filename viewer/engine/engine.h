@@ -41,8 +41,8 @@ bool PAGE_CALL(page_is_over)(void);
 
 // A piece under edit (edit.c). One instance of the module has its text: lines in and frames out, on
 // the standard output, are those of `himc edit` (docs/viewer.md); a frame `play` is for the page:
-// the times (f64) of an edit_span, then the text to be played. Another instance plays
-// it: a copy of its memory is a copy of the whole state.
+// the times (f64) of an edit_span, then the text to be played. Another instance plays it: a copy of
+// its memory is a copy of the whole state.
 
 /// The piece in the file that is the input, as it was left. False with the reason.
 bool PAGE_CALL(page_edit_open)(void);

@@ -135,7 +135,8 @@ class Workshop {
         Object.assign(this, { module, files, tell, lines: [], order: null, player: null, copies: null });
         ((this.time = 0), (this.focus = 0), (this.over = true));
         this.chosen = this.ready = null; // a stroke that may be changed; what is played for it
-        this.rested = []; // what the plan rested on at each cell
+        this.rested = []; // until when each hand's plan rested on strokes, by cells (s)
+        this.unheard = false; // what is played goes nowhere
         this.session = this.instance(chunk => this.hear(chunk));
         this.session.files.written = (name, bytes) => name.endsWith(".himc-edit") && written(name, bytes);
     }
@@ -224,11 +225,12 @@ class Workshop {
         if (--this.ready.cells === 0) this.chosen = null;
     }
 
-    // what is ready, or so far, becomes the last copy, if no stroke has changed on which it rests
+    // what is ready, or so far, becomes the last copy, if no stroke has changed on which it rests, and no
+    // copy is nearer
     takeReady(late) {
         const { copies, ready } = this;
         this.chosen = this.ready = null;
-        if (!ready || late({ at: ready.at, rests: this.rests })) return;
+        if (!ready || late({ at: ready.at, rests: this.rests }) || copies.list.some(copy => copy.at > ready.at && !late(copy))) return;
         while (copies.list[copies.list.length - 1].at > ready.at) copies.drop();
         copies.add(ready.at, this.rests);
     }

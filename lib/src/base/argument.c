@@ -217,7 +217,7 @@ bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
     double its = 0, key = round(12 * log2(hz / 440)) + 57;
     if (!(key >= 0 && key < 12 * 10))
         return false;
-    snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[(int)key % 12], (int)key / 12 % 10);
+    snprintf(name, HIMC_NOTE_SIZE, "%s%c", names[(int)key % 12], '0' + (int)key / 12);
     return himc_note_frequency(name, &its) && its == hz;
 }
 

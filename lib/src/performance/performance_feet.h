@@ -34,7 +34,7 @@ typedef struct performance_feet {
 
 void himc_feet_free(performance_feet *feet);
 HIMC_RT void himc_feet_clear(performance_feet *feet);
-/// True if those that have been played are the same in two scores ...
+/// True if the strokes that have been played are the same in two scores ...
 HIMC_RT bool himc_feet_may_exchange(const performance_feet *feet, const performance_feet *other);
 /// ... whose strokes are exchanged.
 HIMC_RT void himc_feet_exchange(performance_feet *a, performance_feet *b);

@@ -35,8 +35,8 @@ bool himc_performance_load_unheard(himc_performance *performance, const char *te
 /// the same in all other lines, and has not played; it is to be freed. False, and nothing changed,
 /// if what has been played, or is being prepared, may rest on a stroke that differs.
 bool himc_performance_exchange_strokes(himc_performance *performance, himc_performance *other);
-/// Until when (s of the score, or of its take) that is so for a hand; a stroke at another beat or
-/// place, or a push, may be refused later, too.
+/// A hand's strokes before this time (s of the score, or of its take) can no longer be exchanged;
+/// one that gets another beat or place, or a push, may be refused after it, too.
 double himc_performance_rests_to(const himc_performance *performance, himc_hand hand);
 
 #endif

@@ -122,8 +122,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
 /// or after the end.
 /// Before `play` the plan rests on none.
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
-/// From when on a hand's strokes can be exchanged by now (s of the score), if their beats and
-/// places stay.
+/// A hand's strokes before this time (s of the score) can no longer be exchanged; later ones can,
+/// if their beats and places stay. Infinite after the end.
 double himc_planner_rests_to(himc_planner *planner, himc_hand hand);
 /// Drops all strokes; moving sticks come to rest. Stops and goes to beat 0, but a loop that plays
 /// turns on, and begins again on a whole beat when strokes are added.

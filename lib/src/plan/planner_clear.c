@@ -448,7 +448,7 @@ static int try_next(himc_planner *planner)
     c->planning = planner->notes.silent = false;
     memcpy(c->with_way, planner->hand, sizeof c->own);
     memcpy(planner->hand, c->own, sizeof c->own);
-    for (int i = 0; i < HIMC_HANDS; i++) // though nothing comes of it
+    for (int i = 0; i < HIMC_HANDS; i++) // what the trial has looked at
         himc_planner_looked_to(planner, (himc_hand)i, &score.part[i].looked);
     planner->score = score;
     return PLANNING_WORK;

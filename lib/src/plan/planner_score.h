@@ -52,8 +52,8 @@ typedef struct planner_part {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
     planner_place listed; ///< first of the list that is not planned
-    int looked;          ///< of the list, since play began, so many have been looked at out of turn
-    planner_place rolls; ///< first stroke of the rolls that is not planned
+    int looked;           ///< so many of the list have been looked at out of turn, since play began
+    planner_place rolls;  ///< first stroke of the rolls that is not planned
     planner_mark mark[PLANNER_MARKS]; ///< a ring ...
     int marks;                        ///< ... and its next place
 } planner_part;

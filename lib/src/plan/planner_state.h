@@ -202,8 +202,8 @@ HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// A line: this stroke of a loop is left out of the round under way.
 HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
-/// The hand's plan so far rests on no stroke of its part after this time (s), nor on those from
-/// *index on; nor on the one that it plans next, with himc_planner_may_be_next.
+/// A hand's plan so far rests on no stroke of its part after this time (s), and on none of those
+/// from *index on. On the one that it plans next it rests as himc_planner_may_be_next says.
 HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);
 /// True if a hand's plan so far is the same with either of two strokes (on `drum`) as the one that
 /// it plans next: they differ in strength, and leave the one before them as it is.
