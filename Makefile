@@ -213,6 +213,9 @@ view: deps ## build the viewer and show the improvisation in the browser
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
 	$(VIEWER) --play $(BUILD)/demo/view.himc
 
+# Debian's, for which deps installs numpy and others, before one of the user's own
+PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
+
 # the picture of `make still`: the camera (stage front side top eye) and the time (s)
 CAMERA ?= stage
 AT     ?= 20.2
@@ -221,7 +224,7 @@ still: deps ## a picture of it, by a browser without a window, in build/demo/sti
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
-	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.himc $(BUILD)/demo/still.png $(AT) $(CAMERA)
+	HIMC_BUILD=$(BUILD) $(PYTHON) tests/viewer/still.py $(BUILD)/demo/view.himc $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
 	@tools/build/deps.sh tools/build/deps-viewer.txt
@@ -380,7 +383,6 @@ sound-report: deps ## how near the timpano is to recorded ones: table and plot i
 	@tools/build/deps.sh tools/build/deps-sound.txt
 	@$(MAKE) check-sound-report
 
-PYTHON ?= python3
 check-sound-report: all $(BUILD)/tools/research/sound/loudness
 	@$(PYTHON) tools/research/sound/report.py $(PROGRAM) $(BUILD)/sound-report
 	@gnuplot -e "folder='$(BUILD)/sound-report'" tools/research/sound/report.gp
@@ -393,7 +395,7 @@ check-bench: all
 
 bench-page: page ## what the page needs on this machine, in a browser without a window
 	@tools/build/deps.sh tools/build/deps-browser.txt
-	@python3 tests/page/bench.py $(abspath $(BUILD))/himc.html
+	@$(PYTHON) tests/page/bench.py $(abspath $(BUILD))/himc.html
 
 bench-peers: deps ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
 	@tools/build/deps.sh tools/build/deps-peers.txt

@@ -6,7 +6,8 @@
 # crashes, runs longer than TEST_TIMEOUT seconds (600: for a program that hangs, on any machine), or ends without its
 # summary counts as one more failure.
 : "${JOBS:=$(($(nproc 2>/dev/null || echo 1) + 1))}" "${TEST_TIMEOUT:=600}" "${HIMC_BUILD:=build}"
-export HIMC_BUILD TEST_TIMEOUT
+PATH=/usr/bin:$PATH # Debian's python3, for which deps installs numpy, before one of the user's own
+export HIMC_BUILD TEST_TIMEOUT PATH
 logs=$HIMC_BUILD/tests/logs
 
 # runs one program; leaves its output in NAME.log and `passed failed ignored` in NAME.sum
