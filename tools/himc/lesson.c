@@ -14,7 +14,37 @@
 
 #define FASTEST 12.0 // (m/s) chosen: of drummers' tips about 10 are measured
 
-static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, himc_error *error)
+// the hand that the score names for a stroke; the model may play it by the other
+static himc_hand named_hand(const himc_score *score, const himc_strike *s)
+{
+    himc_hand hand = s->hand;
+    int at_once = 0;
+    for (int i = 0; i < score->stroke_count; i++) {
+        const himc_stroke *of = &score->strokes[i];
+        if (fabs(of->beat - s->beat) > 1e-6)
+            continue;
+        if (of->hand == s->hand || of->ornament != HIMC_PLAIN)
+            return s->hand;
+        hand = of->hand;
+        at_once++;
+    }
+    return at_once == 1 ? hand : s->hand;
+}
+
+// where a stroke is in its bar
+static void find_bar(const himc_score *score, lesson_asked *a)
+{
+    himc_bars bars = {.beat = 1, .beats = 4, .unit = 4};
+    for (int i = 0; i < score->bar_count; i++)
+        if (i == 0 || score->bars[i].beat <= a->beat + 1e-6)
+            bars = score->bars[i];
+    double length = 4.0 * bars.beats / bars.unit, since = fmod(a->beat - bars.beat + 1e-6, length);
+    a->in_bar = 1 + (since < 0 ? since + length : since) - 1e-6;
+    a->metre = (int)ceil(length);
+}
+
+static bool keep_asked(lesson *l, himc_performance *p, const himc_score *score,
+                       const himc_event *event, himc_error *error)
 {
     const himc_strike *s = &event->strike;
     bool strike = event->kind == HIMC_EVENT_STRIKE || event->kind == HIMC_EVENT_MISSED;
@@ -31,9 +61,10 @@ static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, 
         i++;
     lesson_asked a = {.beat = s->beat,
                       .time = s->planned_time,
-                      .hand = s->hand,
+                      .hand = named_hand(score, s),
                       .by = -1,
                       .speed = event->kind == HIMC_EVENT_STRIKE ? s->velocity : NAN};
+    find_bar(score, &a);
     snprintf(a.nuance, sizeof a.nuance, "%s", s->nuance);
     snprintf(a.drum, sizeof a.drum, "%s", s->drum);
     a.x = drum ? himc_head_frame_to_world(himc_drum_head_frame(drum), s->planned_x, s->planned_y)
@@ -53,8 +84,8 @@ static bool find_rolls(lesson *l, const himc_score *score, himc_error *error)
         if (s->ornament >= HIMC_ROLL_SINGLE && l->rolls == LESSON_ROLLS / 2)
             return himc_error_set(error, "%s: more than %d rolls", l->score, LESSON_ROLLS / 2);
         if (s->ornament >= HIMC_ROLL_SINGLE)
-            l->roll[l->rolls++] =
-                (lesson_roll){.from = s->beat, .to = s->beat + s->length, .written = true};
+            l->roll[l->rolls++] = (lesson_roll){
+                .beat = s->beat, .from = s->beat, .to = s->beat + s->length, .written = true};
     }
     l->bpm = score->tempi[0].bpm;
     for (int i = 1; i < score->tempo_count && score->stroke_count; i++)
@@ -63,7 +94,8 @@ static bool find_rolls(lesson *l, const himc_score *score, himc_error *error)
     return true;
 }
 
-static bool play_score(lesson *l, himc_performance *p, double most, himc_error *error)
+static bool play_score(lesson *l, himc_performance *p, const himc_score *score, double most,
+                       himc_error *error)
 {
     himc_event event = {.kind = HIMC_EVENT_BEAT};
     bool good = cli_tell(p, "mode ik", NULL, error) && cli_tell(p, "human 0", NULL, error) &&
@@ -72,7 +104,7 @@ static bool play_score(lesson *l, himc_performance *p, double most, himc_error *
          n += LESSON_BLOCK) {
         himc_performance_process(p, LESSON_BLOCK, NULL);
         while (good && event.kind != HIMC_EVENT_DONE && himc_performance_event(p, &event))
-            good = keep_asked(l, p, &event, error);
+            good = keep_asked(l, p, score, &event, error);
     }
     return good;
 }
@@ -87,16 +119,16 @@ static bool ask(lesson *l, himc_error *error)
         last = fmax(last, score->strokes[i].beat + score->strokes[i].length);
     int asked = score->stroke_count;
     bool good = find_rolls(l, score, error);
-    if (good && l->seen[0] && l->seen[1] && asked > 2 * l->count) // to play a long one takes long
+    if (good && l->seen[0] && l->seen[1] && asked > 8 * l->count) // to play a long one takes long
         good = himc_error_set(error,
                               "%s does not match %s: %d strokes found, of %d strokes and rolls, "
-                              "expected half",
+                              "expected an eighth",
                               l->take, l->score, l->count, asked);
     last = himc_score_seconds(score->tempi, score->tempo_count, last);
     himc_performance *p = good ? cli_load(l->score, LESSON_RATE, NULL, error) : NULL;
     l->asked = malloc(LESSON_MOST * sizeof *l->asked);
     good = p && (l->asked || himc_error_set(error, "out of memory")) &&
-           play_score(l, p, last + 30, error);
+           play_score(l, p, score, last + 30, error);
     if (good && !l->asked_count)
         good = himc_error_set(error, "%s: no strokes beside rolls, expected some to compare",
                               l->score);
@@ -139,6 +171,24 @@ static void follow_tip(const lesson *l, const himc_take_tip *tip, int from, less
     p->u_level = hypot(0.3, 60 / (frames * frames));
 }
 
+// where the take does not show a stick
+static bool find_gaps(lesson *l, const himc_take *take, const himc_take_tip tips[HIMC_HANDS])
+{
+    int frames = himc_take_frames(take);
+    l->gap = malloc(((size_t)frames * HIMC_HANDS + 1) * sizeof *l->gap);
+    for (int h = 0; l->gap && h < HIMC_HANDS; h++)
+        for (int k = 0, from = -1; tips[h].present && k <= frames; k++) {
+            bool lost = k < frames && !isfinite(himc_take_point(take, k, tips[h].point).z);
+            if (lost && from < 0)
+                from = k;
+            if (lost || from < 0)
+                continue;
+            l->gap[l->gaps++] = (lesson_gap){(himc_hand)h, (from - 1) / l->rate, k / l->rate};
+            from = -1;
+        }
+    return l->gap;
+}
+
 static bool hear(lesson *l, himc_take *take, const himc_take_options *options, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
@@ -152,6 +202,7 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
     l->played = calloc((size_t)seen.count + 1, sizeof *l->played);
     for (int h = 0; h < HIMC_HANDS; h++)
         l->seen[h] = tips[h].present;
+    bool good = find_gaps(l, take, tips);
     if (seen.count > LESSON_MOST)
         cli_say("note: %s: %d strikes, the first %d are used\n", l->take, seen.count, LESSON_MOST);
     for (int k = 0; l->played && k < seen.count && k < LESSON_MOST; k++) {
@@ -176,8 +227,10 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
                 l->take, FASTEST);
     l->length = seen.count ? seen.strikes[seen.count - 1].time - seen.strikes[0].time : 0;
     free(seen.strikes);
-    return (l->played || himc_error_set(error, "out of memory")) &&
-           (l->count || himc_error_set(error, "%s: no strikes found in the tips", l->take));
+    return ((l->played && good) || himc_error_set(error, "out of memory")) &&
+           (l->count ||
+            himc_error_set(error, "%s: no strikes found in the tips: do --up and its unit fit?",
+                           l->take));
 }
 
 enum { OUT, CSV, SCENE, JSON, TAKE };
@@ -249,6 +302,9 @@ static void tell(const lesson *l)
     lesson_scatter(l, &seconds, &decibels);
     printf("%d of %d strokes matched, %.1f BPM, %.1f ms and %.1f dB off (RMS)\n", l->matched,
            l->due, l->bpm * l->tempo.mean, 1e3 * seconds, decibels);
+    for (int h = 0; h < HIMC_HANDS; h++)
+        if (!l->seen[h])
+            printf("the take does not show the %s stick\n", himc_hand_name((himc_hand)h));
     for (int k = 0; k < l->faults && k < LESSON_NAMED; k++)
         printf("%d. %s\n", k + 1, l->fault[k].what);
     if (!l->faults)
@@ -282,6 +338,7 @@ static int run(const cli_arguments *arguments)
     if (l) {
         free(l->asked);
         free(l->played);
+        free(l->gap);
         free(l);
     }
     return good ? cli_finish(&cli_lesson)

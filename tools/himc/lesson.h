@@ -23,12 +23,15 @@
 /// A stroke of the score, as the model plays it.
 typedef struct lesson_asked {
     double beat, time; ///< in the score (beats); of the model's stroke (s)
+    double in_bar; ///< beat of its bar, from 1; of four beats from beat 1 on if no metre is known
+    int metre;     ///< beats of that bar
     himc_hand hand;
     char nuance[HIMC_NAME_SIZE], drum[HIMC_NAME_SIZE];
     himc_vec3 x;  ///< in the world (m)
     double speed; ///< of the model's impact (m/s)
     int by;       ///< index of the played stroke; -1: missing
     bool skipped; ///< missing with a whole phrase
+    bool unseen;  ///< missing where the take has a gap
 } lesson_asked;
 
 /// A strike of the take. Figures that need an asked stroke are NaN without one.
@@ -46,11 +49,13 @@ typedef struct lesson_played {
     double share[LESSON_LIMBS]; ///< of the fall, by each joint; NaN without a full arm
     double torque[3];           ///< largest, of shoulder, elbow, wrist (N m); NaN likewise
     double raised;              ///< upper arm at the stroke, from hanging (degrees); NaN likewise
+    bool named;                 ///< a fault is this very stroke
 } lesson_played;
 
 /// A roll of the score, or a run of equal fast strokes, and its evenness in the take.
 typedef struct lesson_roll {
     double from, to;         ///< asked (s)
+    double beat;             ///< of its first stroke
     bool written;            ///< a `roll`: its number of strokes is free
     int strokes;             ///< played
     double begin;            ///< of the first (s)
@@ -65,11 +70,17 @@ typedef struct lesson_figure {
     double mean, u;
 } lesson_figure;
 
+/// Frames of a stick that the take does not show (s).
+typedef struct lesson_gap {
+    himc_hand hand;
+    double from, to;
+} lesson_gap;
+
 /// Something worth practising.
 typedef struct lesson_fault {
     char kind[16];  ///< time level spot tempo wait skip roll missing extra hand even elbow
-    char what[160]; ///< in plain words
-    char how[96];   ///< of which strokes
+    char what[224]; ///< in plain words
+    char how[128];  ///< of which strokes
     double effect, u, spread, threshold; ///< in `unit`; u is a standard uncertainty
     const char *unit, *source;           ///< source of the threshold
     double excess; ///< (|effect| less its 99 % bound) over the threshold; 1 and more is named
@@ -78,7 +89,9 @@ typedef struct lesson_fault {
 typedef struct lesson {
     const char *score, *take, *scene; ///< names; NULL: no scene
     lesson_asked *asked;
-    int asked_count, missing;
+    int asked_count, missing, unseen;
+    lesson_gap *gap;
+    int gaps;
     int due; ///< asked of the hands that the take shows
     lesson_played *played;
     int count, matched, extra;
@@ -94,6 +107,7 @@ typedef struct lesson {
     double jnd;              ///< threshold of times at this tempo (s)
     int turn;                ///< places are read with the take turned by this (degrees) ...
     bool turn_sure;          ///< ... which fits much better than another right angle
+    bool apart;              ///< the drums stand otherwise than the score's: each is judged alone
     bool body, torques;      ///< shares and torques are known
     double bent[HIMC_HANDS]; ///< share of the time with the wrist beyond 15 degrees
     double work[HIMC_HANDS]; ///< of an arm's joints, a stroke (J)
@@ -110,6 +124,17 @@ bool lesson_judge(lesson *l, himc_error *error);
 lesson_fault *lesson_fault_add(lesson *l, const char *kind, double effect, double u, double bound,
                                double threshold);
 void lesson_fault_explain(lesson_fault *f, double spread, const char *unit, const char *source);
+/// A list of strokes for a fault's words.
+typedef struct lesson_list {
+    char text[144];
+    int count, listed;
+} lesson_list;
+
+/// One more, if there is room; it is counted all the same.
+void lesson_list_add(lesson_list *list, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/// The text, with " and 7 more" if there was no room.
+const char *lesson_list_text(lesson_list *list);
 /// How far strokes are off the beat of the player's own tempo, and off the asked level, RMS.
 void lesson_scatter(const lesson *l, double *seconds, double *decibels);
 /// Shares of the joints, wrist and torques, of takes that show whole arms.

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define WINDOW 16 // chosen: strokes of the local line
+#define STEP 0.6  // chosen: of what a tempo that changes all the time leaves
 #define PHRASE 3  // chosen: so many missing strokes in a row are a phrase left out
 
 #define JND_SHARE 0.025 // of the interval
@@ -40,9 +41,31 @@ double lesson_spread(const lesson_course *c, const double *x)
     return 1.4826 * lesson_median(c->scratch, c->n);
 }
 
+void lesson_scatter(const lesson *l, double *seconds, double *decibels)
+{
+    double n = 0, time = 0, level = 0;
+    for (int i = 0; i < l->count; i++)
+        if (isfinite(l->played[i].off)) {
+            n++;
+            time += l->played[i].off * l->played[i].off;
+            level += l->played[i].level * l->played[i].level;
+        }
+    *seconds = n > 0 ? sqrt(time / n) : NAN;
+    *decibels = n > 0 ? sqrt(level / n) : NAN;
+}
+
+double lesson_below(double sd, double free)
+{
+    return sd * (1 - pow(1 - 2 / (9 * free) + 2.33 * sqrt(2 / (9 * free)), -1.5));
+}
+
 static double bent(const lesson_course *c, double asked)
 {
-    double u = c->bend != 0 ? (asked - c->asked[0]) / c->half - 1 : 0;
+    if (c->bend == 0)
+        return 0;
+    if (isfinite(c->knee))
+        return c->bend * fmax(0, asked - c->knee);
+    double u = (asked - c->asked[0]) / c->half - 1;
     return c->bend * u * u;
 }
 
@@ -84,12 +107,20 @@ static void find_beat(lesson_course *c)
     }
 }
 
-void lesson_fit(const double *x, const double *y, int n, int terms, double p[3], double u[3])
+static double third(double t, double knee)
+{
+    return isfinite(knee) ? fmax(0, t - knee) : t * t;
+}
+
+// lesson_fit, whose third term is max(0, u - knee) unless the knee is NaN; returns the sum of the
+// squares that are left
+static double fit(const double *x, const double *y, int n, int terms, double knee, double p[3],
+                  double u[3])
 {
     double m[3][6] = {{0}}, v[3] = {0}, ss = 0, lag = 0, before = 0;
     double low = x[0], half = 0.5 * (x[n - 1] - x[0]) + 1e-9;
     for (int k = 0; k < n; k++) {
-        double t = (x[k] - low) / half - 1, f[3] = {1, t, t * t};
+        double t = (x[k] - low) / half - 1, f[3] = {1, t, third(t, knee)};
         for (int i = 0; i < terms; i++) {
             v[i] += f[i] * y[k];
             for (int j = 0; j < terms; j++)
@@ -113,12 +144,38 @@ void lesson_fit(const double *x, const double *y, int n, int terms, double p[3],
     }
     for (int k = 0; k < n; k++) {
         double t = (x[k] - low) / half - 1,
-               r = y[k] - p[0] - t * (p[1] + (terms > 2 ? t * p[2] : 0));
+               r = y[k] - p[0] - t * p[1] - (terms > 2 ? third(t, knee) * p[2] : 0);
         ss += r * r, lag += k ? r * before : 0, before = r;
     }
     double rho = ss > 0 ? fmin(0.9, fmax(0, lag / ss)) : 0;
     for (int i = 0; i < terms; i++)
         u[i] = sqrt(ss / (n > terms ? n - terms : 1) * m[i][3 + i] * (1 + rho) / (1 - rho));
+    return ss;
+}
+
+void lesson_fit(const double *x, const double *y, int n, int terms, double p[3], double u[3])
+{
+    fit(x, y, n, terms, NAN, p, u);
+}
+
+// the stroke at which a tempo that is even before and after changes, or -1 if one that changes all
+// the time fits `t` about as well, whose fit is p
+static int find_knee(const lesson_course *c, const double *t, double p[3], double u[3])
+{
+    int knee = -1, every = 1 + c->n / 64; // chosen: a bar or two of a long piece
+    double least = STEP * fit(c->asked, t, c->n, 3, NAN, p, u);
+    double half = 0.5 * (c->asked[c->n - 1] - c->asked[0]) + 1e-9;
+    for (int k = 3 * LESSON_FEWEST; k < c->n - 3 * LESSON_FEWEST; k += every) {
+        double q[3], v[3];
+        double ss = fit(c->asked, t, c->n, 3, (c->asked[k] - c->asked[0]) / half - 1, q, v);
+        if (ss >= least)
+            continue;
+        least = ss;
+        knee = k;
+        memcpy(p, q, sizeof q);
+        memcpy(u, v, sizeof v);
+    }
+    return knee;
 }
 
 // played over asked intervals, the middle one; over some strokes, as hands may differ
@@ -246,18 +303,28 @@ static void judge_tempo(lesson *l, lesson_course *c)
             t[k] - p[0] - p[1] * ((c->asked[k] - c->asked[0]) / half - 1);
     if (c->n < 3 * LESSON_FEWEST)
         return;
-    lesson_fit(c->asked, t, c->n, 3, p, u);
+    int knee = find_knee(c, t, p, u);
     double change = 100 * ((p[1] - 2 * p[2]) / (p[1] + 2 * p[2]) - 1), own = 400 * u[2] / p[1];
+    if (knee >= 0) {
+        change = 100 * (p[1] / (p[1] + p[2]) - 1);
+        own = 100 * u[2] / p[1];
+    }
     if (fabs(p[2]) > LESSON_SURE * u[2]) { // else the local line follows
-        c->bend = p[2];
+        c->bend = knee < 0 ? p[2] : p[2] / half;
         c->half = half;
+        c->knee = knee < 0 ? NAN : c->asked[knee];
     }
     lesson_fault *f = lesson_fault_add(l, "tempo", change, own, LESSON_SURE, JND_TEMPO);
     if (!f)
         return;
-    snprintf(f->what, sizeof f->what,
-             "You %s: the tempo %s by %.1f %% from the first stroke to the last",
-             change < 0 ? "drag" : "rush", change < 0 ? "falls" : "rises", fabs(change));
+    const char *way = change < 0 ? "drag" : "rush", *goes = change < 0 ? "falls" : "rises";
+    if (knee < 0)
+        snprintf(f->what, sizeof f->what,
+                 "You %s: the tempo %s by %.1f %% from the first stroke to the last", way, goes,
+                 fabs(change));
+    else
+        snprintf(f->what, sizeof f->what, "You %s from beat %g on: the tempo %s by %.1f %% there",
+                 way, l->asked[l->played[c->stroke[knee]].of].beat, goes, fabs(change));
     snprintf(f->how, sizeof f->how, "%d strokes, about the score's own tempo", c->n);
     lesson_fault_explain(f, own, "%", tempo_source);
 }

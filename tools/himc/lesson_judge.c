@@ -13,8 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FEWEST 3   // strokes of a group, beside LESSON_FEWEST others; chosen: a phrase's accents
-#define SINGLE 4.0 // standard deviations of a single stroke; chosen: 1 of 16000 is further off
+#define FEWEST 3      // strokes of a group, beside LESSON_FEWEST others; chosen: a phrase's accents
+#define CORE 3.5      // standard deviations within which the player's own spread is taken; chosen
+#define NEAR_GAP 0.03 // (s) chosen: a strike that close to a gap is blunted
+#define ELSEWHERE 0.06  // (m) chosen: three thresholds of places
+#define WILD 0.1        // (s), and
+#define WILD_SHARE 0.25 // of the interval; chosen: twice the unevenness of a beginner
+#define ON_DRUM 0.25    // (m) from its middle; chosen: timpani stand farther apart
+#define SINGLE 4.0      // standard deviations of a single stroke; chosen: 1 of 16000 is further off
 
 // Thresholds of listeners, and where no one has published any, what himc itself counts as right.
 static const char level_source[] = "chosen: 1 dB; listeners notice 0.4 dB between noises in the "
@@ -30,14 +36,19 @@ static const char even_source[] =
 static const char even_level_source[] =
     "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
 
-#define LENGTH 0.15 // (s) of a roll
-static const char length_source[] =
-    "chosen: two of its strokes, 150 ms or more; no listeners' threshold is published";
 #define FLAT 0.5   // share of a crescendo that must be missing
 #define SWELL 3.0  // (dB) of a crescendo or more; chosen
 #define WAVERS 0.5 // (dB) of asked strokes that are alike
+#define STEP 0.6   // share of a swell in one step: no swell, but another dynamic
+#define DRIFT 2.0  // (dB) of loudness, over the whole take; chosen: as a dynamic's half
 
-enum { HAND, IN_BEAT, NUANCE, SPOT, KINDS };
+static const char drift_source[] =
+    "chosen: 2 dB over the whole take; no listeners' threshold is published";
+
+enum { HAND, IN_BEAT, NUANCE, SPOT, BEAT_OF_BAR, EACH_SECOND, PLACE_IN_BAR, KINDS };
+// of places in a bar there are many, of few strokes each: one would often seem to differ
+static const double bound_of[KINDS] = {LESSON_SURE, LESSON_SURE, LESSON_SURE, LESSON_SURE,
+                                       SINGLE,      SINGLE,      SINGLE};
 
 static int group_of(const lesson *l, int stroke, int kind)
 {
@@ -48,6 +59,12 @@ static int group_of(const lesson *l, int stroke, int kind)
         return (int)p->strike.hand;
     if (kind == IN_BEAT)
         return fabs(quarters - round(quarters)) < 0.02 ? (int)round(quarters) % 4 : 4;
+    if (kind == BEAT_OF_BAR)
+        return a->metre > 1 ? (int)(a->in_bar + 0.02) : 0;
+    if (kind == EACH_SECOND)
+        return a->metre % 2 ? 0 : 1 + (int)round(4 * (a->in_bar - 1)) % 8;
+    if (kind == PLACE_IN_BAR)
+        return a->metre > 1 ? (int)round(4 * a->in_bar) : 0;
     for (int k = 0; k < l->asked_count; k++) { // the first stroke that is alike stands for all
         const lesson_asked *b = &l->asked[k];
         bool same = kind == NUANCE ? !strcmp(a->nuance, b->nuance)
@@ -69,6 +86,13 @@ static void name_group(const lesson *l, int kind, int id, char *text, size_t siz
         snprintf(text, size, "the strokes %s", places[id]);
     else if (kind == NUANCE)
         snprintf(text, size, "the strokes marked %s", l->asked[id].nuance);
+    else if (kind == BEAT_OF_BAR)
+        snprintf(text, size, "the strokes of each bar's beat %d", id);
+    else if (kind == EACH_SECOND)
+        snprintf(text, size, "the strokes at beats %g, %g ... of the bars", 0.75 + 0.25 * id,
+                 2.75 + 0.25 * id);
+    else if (kind == PLACE_IN_BAR)
+        snprintf(text, size, "the strokes at each bar's beat %g", 0.25 * id);
     else
         snprintf(text, size, "the strokes at the spot of beat %g (%s)", l->asked[id].beat,
                  l->asked[id].drum);
@@ -104,7 +128,7 @@ static difference compare(const lesson_course *c, const int *group, int kind, in
         d.spread = hypot(d.spread, sqrt(pooled));
     }
     d.u = sqrt(variance);
-    d.excess = (d.size - LESSON_SURE * d.u) / threshold;
+    d.excess = (d.size - bound_of[kind] * d.u) / threshold;
     return d;
 }
 
@@ -114,19 +138,6 @@ typedef struct quantity {
     int axes;
     double scale, threshold;
 } quantity;
-
-void lesson_scatter(const lesson *l, double *seconds, double *decibels)
-{
-    double n = 0, time = 0, level = 0;
-    for (int i = 0; i < l->count; i++)
-        if (isfinite(l->played[i].off)) {
-            n++;
-            time += l->played[i].off * l->played[i].off;
-            level += l->played[i].level * l->played[i].level;
-        }
-    *seconds = n > 0 ? sqrt(time / n) : NAN;
-    *decibels = n > 0 ? sqrt(level / n) : NAN;
-}
 
 // "30 mm too far, 12 mm to the left", without what is none
 static void name_place(const difference *d, char *text, size_t size)
@@ -140,41 +151,88 @@ static void name_place(const difference *d, char *text, size_t size)
                         away[axis], ways[axis][d->effect[axis] > 0]);
 }
 
-static void tell_group(lesson *l, const quantity *q, difference d)
+// asked and played distance of a group's spot from the nearest other spot of its drum (m), NaN
+// without one; returns the other's stroke
+static const lesson_asked *spots_apart(const lesson *l, const lesson_course *c, const difference *d,
+                                       const int *group, double *asked, double *played)
 {
-    char who[80], others[40] = "the others", place[64];
+    const lesson_asked *a = &l->asked[d->id];
+    const lesson_asked *nearest = NULL;
+    *asked = *played = NAN;
+    for (int k = 0; k < c->n; k++) {
+        const lesson_asked *b = &l->asked[l->played[c->stroke[k]].of];
+        himc_vec3 x = himc_vec3_sub(a->x, b->x);
+        if (group[k] == d->id || strcmp(a->drum, b->drum) != 0 || hypot(x.x, x.y) >= *asked)
+            continue;
+        nearest = b;
+        *asked = hypot(x.x, x.y);
+        *played = hypot(x.x + d->effect[0], x.y + d->effect[1]);
+    }
+    return nearest;
+}
+
+static void tell_spot(lesson_fault *f, const lesson *l, const lesson_course *c, const difference *d,
+                      const int *group, const char *who, const char *others)
+{
+    char place[64];
+    double asked, played;
+    bool whole = true; // all that a drum has
+    name_place(d, place, sizeof place);
+    const lesson_asked *other = spots_apart(l, c, d, group, &asked, &played);
+    for (int k = 0; k < c->n; k++)
+        whole =
+            whole && (group[k] == d->id ||
+                      strcmp(l->asked[d->id].drum, l->asked[l->played[c->stroke[k]].of].drum) != 0);
+    if (d->kind == HAND) // who is right is not known, here and in time
+        himc_format(f->what, sizeof f->what,
+                    "The hands' places are %.0f mm apart: the left's, seen from the right's, %s",
+                    f->effect, place);
+    else if (d->kind == SPOT && asked > 2 * LESSON_PLACE && played < LESSON_PLACE)
+        himc_format(f->what, sizeof f->what,
+                    "The spots of beat %g and beat %g (%s) are played on one place: %.0f mm apart "
+                    "are asked",
+                    l->asked[d->id].beat, other->beat, other->drum, 1e3 * asked);
+    else
+        himc_format(f->what, sizeof f->what,
+                    "%s land %.0f mm beside their place (%s), measured from %s", who, f->effect,
+                    place, others);
+    snprintf(f->how, sizeof f->how, "%d strokes against %d%s", d->in, d->out,
+             d->kind == SPOT && whole ? "; or the drum stands so far from the score's place" : "");
+}
+
+static void tell_group(lesson *l, const lesson_course *c, const quantity *q, const int *group,
+                       difference d)
+{
+    char who[80], others[40] = "the others";
+    bool place = q->axes > 1, time = q->scale > 1;
     // the softer hand, the earlier one, the left one
-    if (d.kind == HAND && (q->axes == 1 ? d.effect[0] > 0 : d.id == HIMC_RIGHT)) {
+    if (d.kind == HAND && (place ? d.id == HIMC_RIGHT : d.effect[0] > 0)) {
         d.id = !d.id;
         for (int axis = 0; axis < q->axes; axis++)
             d.effect[axis] = -d.effect[axis];
     }
-    name_place(&d, place, sizeof place);
-    double shown = q->scale * (q->axes > 1 ? d.size : d.effect[0]);
-    lesson_fault *f =
-        lesson_fault_add(l, q->kind, shown, q->scale * d.u, LESSON_SURE, q->scale * q->threshold);
+    double shown = q->scale * (place ? d.size : d.effect[0]);
+    lesson_fault *f = lesson_fault_add(l, q->kind, shown, q->scale * d.u, bound_of[d.kind],
+                                       q->scale * q->threshold);
     if (!f)
         return;
     name_group(l, d.kind, d.id, who, sizeof who);
     if (d.kind == HAND)
         snprintf(others, sizeof others, "the %s hand's", himc_hand_name((himc_hand)!d.id));
     who[0] = 'T';
-    if (q->axes > 1 && d.kind == HAND) // who is right is not known, here and in time
-        himc_format(f->what, sizeof f->what,
-                    "The hands' places are %.0f mm apart: the left's, seen from the right's, %s",
-                    shown, place);
-    else if (q->axes > 1)
-        himc_format(f->what, sizeof f->what,
-                    "%s land %.0f mm beside their place (%s), measured from %s", who, shown, place,
-                    others);
-    else if (d.kind == HAND && strcmp(q->kind, "time") == 0)
-        snprintf(f->what, sizeof f->what, "The hands are %.1f ms apart: the %s behind the %s",
-                 fabs(shown), himc_hand_name((himc_hand)!d.id), himc_hand_name((himc_hand)d.id));
-    else
-        snprintf(f->what, sizeof f->what, "%s are %.1f %s %s than %s", who, fabs(shown), q->unit,
-                 shown > 0 ? q->more : q->less, others);
     snprintf(f->how, sizeof f->how, "%d strokes against %d", d.in, d.out);
     lesson_fault_explain(f, q->scale * d.spread, q->unit, q->source);
+    if (place)
+        tell_spot(f, l, c, &d, group, who, others);
+    else if (d.kind == HAND && time)
+        snprintf(f->what, sizeof f->what, "The hands are %.1f ms apart: the %s behind the %s",
+                 fabs(shown), himc_hand_name((himc_hand)!d.id), himc_hand_name((himc_hand)d.id));
+    else if (d.kind == HAND || time)
+        snprintf(f->what, sizeof f->what, "%s are %.1f %s %s than %s", who, fabs(shown), q->unit,
+                 shown > 0 ? q->more : q->less, others);
+    else // they may be as loud as the others where they should be louder
+        snprintf(f->what, sizeof f->what, "%s are %.1f dB too %s beside %s", who, fabs(shown),
+                 shown > 0 ? "loud" : "soft", others);
 }
 
 /// Names the largest difference and takes it away, again and again.
@@ -188,8 +246,8 @@ static bool judge_groups(lesson *l, lesson_course *c, const quantity *q)
         for (int kind = 0; kind < KINDS; kind++)
             for (int k = 0, *g = group + kind * c->n; k < c->n; k++) {
                 bool first = true; // of its group
-                for (int i = 0; i < k; i++)
-                    first = first && g[i] != g[k];
+                for (int i = 0; i < k && first; i++)
+                    first = g[i] != g[k];
                 difference d = {.excess = 0};
                 if (first)
                     d = compare(c, g, kind, g[k], q->axes, q->threshold);
@@ -200,7 +258,7 @@ static bool judge_groups(lesson *l, lesson_course *c, const quantity *q)
             }
         if (!best.in)
             break;
-        tell_group(l, q, best);
+        tell_group(l, c, q, group + best.kind * c->n, best);
         if (best.kind == HAND && !strcmp(q->kind, "time"))
             l->lead[best.id] = best.effect[0];
         for (int k = 0; k < c->n; k++)
@@ -210,12 +268,6 @@ static bool judge_groups(lesson *l, lesson_course *c, const quantity *q)
     }
     free(group);
     return group != NULL;
-}
-
-// a standard deviation less its lower 99 % bound, by the chi-square of Wilson and Hilferty (1931)
-static double below(double sd, double free)
-{
-    return sd * (1 - pow(1 - 2 / (9 * free) + 2.33 * sqrt(2 / (9 * free)), -1.5));
 }
 
 // the slope of the level over the asked one within a swell, named and taken away if it is flat
@@ -250,18 +302,42 @@ static void judge_swell(lesson *l, lesson_course *c, int from, int to, bool fall
 /// Crescendi and diminuendi of the score: runs in which the asked level goes one way.
 static void judge_swells(lesson *l, lesson_course *c)
 {
-    double *asked = c->value[2];
+    double *asked = c->value[2], step = 0;
     for (int k = 0; k < c->n; k++)
         asked[k] = 20 * log10(l->asked[l->played[c->stroke[k]].of].speed);
     for (int way = 1; way >= -1; way -= 2)
         for (int from = 0, k = 1; k <= c->n; k++) {
             int before = k - 2 > from ? k - 2 : from; // a hand with itself
-            if (k < c->n && way * (asked[k] - asked[before]) > -WAVERS)
+            if (k < c->n && way * (asked[k] - asked[before]) > -WAVERS) {
+                step = fmax(step, way * (asked[k] - asked[before]));
                 continue;
-            if (k - from >= 2 * LESSON_FEWEST && way * (asked[k - 1] - asked[from]) > SWELL)
+            }
+            double rise = way * (asked[k - 1] - asked[from]);
+            if (k - from >= 2 * LESSON_FEWEST && rise > SWELL && step < STEP * rise)
                 judge_swell(l, c, from, k - 1, way < 0);
             from = k;
+            step = 0;
         }
+}
+
+/// Loudness that drifts away from the score's dynamics, named and taken away.
+static void judge_drift(lesson *l, lesson_course *c)
+{
+    double p[3], u[3], half = 0.5 * (c->asked[c->n - 1] - c->asked[0]) + 1e-9;
+    if (c->n < 3 * LESSON_FEWEST)
+        return;
+    lesson_fit(c->asked, c->value[0], c->n, 2, p, u);
+    lesson_fault *f = lesson_fault_add(l, "level", 2 * p[1], 2 * u[1], LESSON_SURE, DRIFT);
+    if (!f)
+        return;
+    snprintf(
+        f->what, sizeof f->what,
+        "You get %s, beside the score's dynamics: by %.1f dB from the first stroke to the last",
+        p[1] > 0 ? "louder" : "softer", fabs(f->effect));
+    snprintf(f->how, sizeof f->how, "%d strokes", c->n);
+    lesson_fault_explain(f, u[1] * sqrt(c->n / 3.0), "dB", drift_source);
+    for (int k = 0; k < c->n; k++)
+        c->value[0][k] -= p[1] * ((c->asked[k] - c->asked[0]) / half - 1);
 }
 
 /// Unevenness of all strokes, once the differences of groups are taken away.
@@ -287,8 +363,8 @@ static void judge_even(lesson *l, lesson_course *c, const quantity *q)
     // the local beat follows the strokes a little
     double sd = q->scale * sqrt(fmax(0, sum - camera * camera) * c->n / (c->n - LESSON_FEWEST));
     double most = time ? 1e3 * fmax(UNEVEN, UNEVEN_SHARE * c->interval) : UNEVEN_LEVEL;
-    lesson_fault *f = lesson_fault_add(l, "even", sd, below(sd, c->n - LESSON_FEWEST) / LESSON_SURE,
-                                       LESSON_SURE, most);
+    lesson_fault *f = lesson_fault_add(
+        l, "even", sd, lesson_below(sd, c->n - LESSON_FEWEST) / LESSON_SURE, LESSON_SURE, most);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what, "Your strokes are uneven in %s: %.1f %s about your own %s",
@@ -297,20 +373,42 @@ static void judge_even(lesson *l, lesson_course *c, const quantity *q)
     lesson_fault_explain(f, sd, q->unit, time ? even_source : even_level_source);
 }
 
-// a displaced stroke is heard against its neighbours; the first and the last have one alone
+// a displaced stroke is heard against its neighbours, the middle of four; the first and the last
+// have fewer
 static void against_neighbours(lesson_course *c)
 {
     double *x = c->value[0];
     memcpy(c->scratch, x, (size_t)c->n * sizeof *x);
-    for (int k = 0; k < c->n; k++)
-        x[k] = k && k + 1 < c->n ? x[k] - 0.5 * (c->scratch[k - 1] + c->scratch[k + 1]) : 0;
+    for (int k = 0; k < c->n; k++) {
+        double near[4];
+        int n = 0;
+        for (int i = k > 2 ? k - 2 : 0; i <= k + 2 && i < c->n; i++)
+            if (i != k)
+                near[n++] = c->scratch[i];
+        x[k] = k && k + 1 < c->n ? c->scratch[k] - lesson_median(near, n) : 0;
+    }
 }
 
-/// Strokes that are far outside the player's own spread.
+// standard deviation of what is no single stroke: of the middle, then of all within CORE of it
+static double own_spread(const double *size, int n, double own)
+{
+    for (int round = 0; round < 8; round++) {
+        double sum = 0, used = 0;
+        for (int k = 0; k < n; k++)
+            if (size[k] <= CORE * own)
+                sum += size[k] * size[k], used++;
+        own = fmax(own, used > 0 ? sqrt(sum / used) : 0);
+    }
+    return own;
+}
+
+/// Strokes that are far outside the player's own spread, in one fault.
 static void judge_singles(lesson *l, lesson_course *c, const quantity *q)
 {
-    double own = 0, worst = 0, rest = 0, *size = c->value[0];
-    int which = -1, count = 0;
+    double own = 0, worst = 0, *size = c->value[0];
+    bool place = q->axes > 1;
+    int which = -1;
+    lesson_list list = {.count = 0};
     for (int axis = 0; axis < q->axes; axis++) {
         for (int k = 0; k < c->n; k++)
             c->scratch[k] = c->value[axis][k];
@@ -320,247 +418,216 @@ static void judge_singles(lesson *l, lesson_course *c, const quantity *q)
         own = hypot(own, lesson_spread(c, c->value[axis]));
     }
     for (int k = 0; k < c->n; k++) {
-        double x = q->axes > 1 ? hypot(size[k], c->value[1][k]) : size[k];
-        c->scratch[k] = fabs(x);
-        if (fabs(x) > fabs(worst))
-            worst = x, which = k;
+        size[k] = place ? hypot(size[k], c->value[1][k]) : size[k];
+        c->scratch[k] = fabs(size[k]);
+        if (fabs(size[k]) > fabs(worst))
+            worst = size[k], which = k;
     }
-    qsort(c->scratch, (size_t)c->n, sizeof *c->scratch, himc_order_doubles);
-    for (int k = 0; k < c->n - 2; k++) // the two furthest may be faults
-        rest += c->scratch[k] * c->scratch[k] / (c->n - 2);
     const lesson_played *p = &l->played[c->stroke[which < 0 ? 0 : which]];
-    own = fmax(own, sqrt(rest));
-    own = hypot(own, q->axes > 1 ? 0 : q->scale > 1 ? p->u_time : p->u_level);
-    for (int k = 0; k < c->n; k++)
-        count += c->scratch[k] - SINGLE * own > q->threshold;
+    own = hypot(own_spread(c->scratch, c->n, own), place          ? 0
+                                                   : q->scale > 1 ? p->u_time
+                                                                  : p->u_level);
     lesson_fault *f = c->n < 2 * LESSON_FEWEST || which < 0
                           ? NULL
                           : lesson_fault_add(l, q->kind, q->scale * worst, q->scale * own, SINGLE,
                                              q->scale * q->threshold);
     if (!f)
         return;
-    const lesson_asked *a = &l->asked[l->played[c->stroke[which]].of];
-    snprintf(f->what, sizeof f->what, "The %s hand's stroke at beat %g %s %.1f %s %s",
-             himc_hand_name(a->hand), a->beat, q->axes > 1 ? "lands" : "is", fabs(f->effect),
-             q->unit,
-             q->axes > 1 ? "beside its place"
-             : worst > 0 ? q->more
-                         : q->less);
-    snprintf(f->how, sizeof f->how, "a single stroke%s", count > 1 ? "; there are others" : "");
+    for (int k = 0; k < c->n; k++) {
+        lesson_played *of = &l->played[c->stroke[k]];
+        if (fabs(size[k]) - SINGLE * own <= q->threshold)
+            continue;
+        of->named = true;
+        lesson_list_add(&list, "beat %g: %.*f %s%s%s", l->asked[of->of].beat, q->scale > 1 ? 0 : 1,
+                        q->scale * fabs(size[k]), q->unit, place ? "" : " ",
+                        place         ? ""
+                        : size[k] > 0 ? q->more
+                                      : q->less);
+    }
+    const lesson_asked *a = &l->asked[p->of];
+    if (list.count > 1)
+        himc_format(f->what, sizeof f->what, "%d strokes %s: %s", list.count,
+                    place ? "land beside their places" : "are far from the others",
+                    lesson_list_text(&list));
+    else
+        snprintf(f->what, sizeof f->what, "The %s hand's stroke at beat %g %s %.1f %s %s",
+                 himc_hand_name(a->hand), a->beat, place ? "lands" : "is", fabs(f->effect), q->unit,
+                 place       ? "beside its place"
+                 : worst > 0 ? q->more
+                             : q->less);
+    snprintf(f->how, sizeof f->how, list.count > 1 ? "the largest of %d" : "a single stroke",
+             list.count);
     lesson_fault_explain(f, q->scale * own, q->unit, q->source);
 }
 
-// a roll that is left out, or that ends well before its end `due` or goes on well after it (s)
-static void judge_length(lesson *l, const lesson_roll *r, double due, double last, double interval)
+// the strokes of the take on the drum that the score names for them: the middle of their places
+static bool drum_middle(const lesson *l, const lesson_course *c, const char *drum, double *scratch,
+                        himc_vec3 *middle)
 {
-    double seconds, decibels, most = fmax(LENGTH, 2 * interval);
-    double early = due - last - interval;
-    lesson_scatter(l, &seconds, &decibels);
-    if (!r->strokes) {
-        lesson_fault *f = lesson_fault_add(l, "missing", 1, 0, 0, 0.01);
-        if (f) {
-            snprintf(f->what, sizeof f->what, "The roll until %.1f s is left out", due);
-            snprintf(f->how, sizeof f->how, "no stroke in its time");
-            lesson_fault_explain(f, 0, "roll", lesson_none_source);
-            f->threshold = 1;
+    double *axis[] = {&middle->x, &middle->y};
+    int n = 0;
+    for (int k = 0; k < 2; k++) {
+        n = 0;
+        for (int i = 0; i < c->n; i++) {
+            const lesson_played *p = &l->played[c->stroke[i]];
+            if (!strcmp(l->asked[p->of].drum, drum))
+                scratch[n++] = k ? p->strike.x.y : p->strike.x.x;
         }
-        return;
+        *axis[k] = lesson_median(scratch, n);
     }
-    lesson_fault *f =
-        lesson_fault_add(l, "roll", 1e3 * early, 1e3 * seconds, LESSON_SURE, 1e3 * most);
-    if (!f)
-        return;
-    snprintf(f->what, sizeof f->what, "The roll at %.1f s is too %s: it ends %.0f ms too %s",
-             r->begin, early > 0 ? "short" : "long", fabs(f->effect), early > 0 ? "early" : "late");
-    snprintf(f->how, sizeof f->how, "%d strokes", r->strokes);
-    lesson_fault_explain(f, 1e3 * seconds, "ms", length_source);
+    return n >= LESSON_FEWEST;
 }
 
-/// Evenness of a roll: its strokes about an even course that may quicken; a stroke left out counts.
-static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double *level, int n)
+// of all asked drums the one whose strokes in the take a place belongs to, if it is not `own`
+static const char *other_drum(const lesson *l, const lesson_course *c, himc_vec3 x, const char *own)
 {
-    double index[512], value[512], p[3], u[3], even[2] = {0}, ss = 0, louder = 0, mean = 0;
-    r->strokes = n, r->begin = n ? t[0] : NAN;
-    if (n < 2 * LESSON_FEWEST)
-        return;
-    for (int k = 1; k < n; k++)
-        value[k - 1] = t[k] - t[k - 1];
-    double middle = lesson_median(value, n - 1);
-    if (!(middle > 0)) // both hands at once: no roll's strokes
-        return;
-    for (int k = 0; k < n; k++)
-        index[k] = k ? index[k - 1] + fmax(1, round((t[k] - t[k - 1]) / middle)) : 0;
-    lesson_fit(index, t, n, 3, p, u);
-    double half = 0.5 * index[n - 1];
-    int count[2] = {0};
-    for (int k = 0; k < n; k++) {
-        double x = index[k] / half - 1;
-        value[k] = t[k] - p[0] - x * (p[1] + x * p[2]);
-        int odd = (int)index[k] % 2;
-        even[odd] += value[k], count[odd]++;
-        ss += value[k] * value[k], mean += level[k] / n;
-    }
-    for (int k = 0; k < n; k++)
-        louder += pow(level[k] - mean, 2);
-    double frame = 1 / (l->rate * sqrt(12)), free = n - 3, sd = sqrt(ss / free);
-    double late = count[0] && count[1] ? even[1] / count[1] - even[0] / count[0] : 0;
-    double rest = sqrt(fmax(0, ss - late * late * count[0] * count[1] / n) / (free - 1));
-    r->rate = half / p[1];
-    r->uneven = sqrt(fmax(0, sd * sd - frame * frame / 4));
-    r->u = below(r->uneven, free) / LESSON_SURE;
-    r->gallop = late;
-    r->u_gallop = rest * sqrt(1.0 / fmax(1, count[0]) + 1.0 / fmax(1, count[1]));
-    r->spread = sqrt(louder / (n - 1));
-    bool gallops = fabs(late) - LESSON_SURE * r->u_gallop > LESSON_JND_TIME;
-    lesson_fault *f = gallops ? lesson_fault_add(l, "roll", 1e3 * late, 1e3 * r->u_gallop,
-                                                 LESSON_SURE, 1e3 * LESSON_JND_TIME)
-                              : lesson_fault_add(l, "roll", 1e3 * r->uneven, 1e3 * r->u,
-                                                 LESSON_SURE, 1e3 * LESSON_JND_TIME);
-    if (!f)
-        return;
-    snprintf(f->what, sizeof f->what, "The roll at %.1f s %s: %s %.1f ms %s", t[0],
-             gallops ? "gallops" : "is uneven",
-             gallops ? "every second stroke comes" : "its strokes are", fabs(f->effect),
-             !gallops   ? "off an even roll"
-             : late > 0 ? "late"
-                        : "early");
-    snprintf(f->how, sizeof f->how, "%d strokes, %.1f a second", n, r->rate);
-    lesson_fault_explain(f, 1e3 * (gallops ? rest : sd), "ms", lesson_time_source);
-}
-
-// runs of equal fast strokes are rolls as well
-static void find_runs(lesson *l)
-{
-    for (int from = 0, k = 1; k <= l->asked_count; k++) {
-        const lesson_asked *a = l->asked;
-        double first = from + 1 < l->asked_count ? a[from + 1].time - a[from].time : 0;
-        bool goes_on = k < l->asked_count && first > 0.04 && first < 0.17 &&
-                       fabs(a[k].time - a[k - 1].time - first) < 0.1 * first;
-        if (goes_on)
+    himc_vec3 middle;
+    double here = drum_middle(l, c, own, c->scratch, &middle)
+                      ? hypot(x.x - middle.x, x.y - middle.y)
+                      : INFINITY,
+           least = 0.5 * here; // chosen
+    const char *found = NULL;
+    for (int k = 0; k < l->asked_count && here > ON_DRUM; k++) {
+        const char *drum = l->asked[k].drum;
+        if (!strcmp(drum, own) || (k && !strcmp(drum, l->asked[k - 1].drum)) ||
+            !drum_middle(l, c, drum, c->scratch, &middle))
             continue;
-        if (k - from >= 2 * LESSON_FEWEST && l->rolls < LESSON_ROLLS)
-            l->roll[l->rolls++] = (lesson_roll){.from = a[from].time, .to = a[k - 1].time};
-        from = k - from > 1 ? k - 1 : k;
-    }
-}
-
-static void judge_rolls(lesson *l, const lesson_course *c)
-{
-    for (int i = 0; i < l->rolls; i++) {
-        lesson_roll *r = &l->roll[i];
-        double t[512], level[512], interval[512];
-        int n = 0, k = 0;
-        while (k + 1 < c->n && c->asked[k + 1] < r->from)
-            k++;
-        int before = c->segment[k];
-        while (k + 1 < c->n && c->asked[k] < r->to - 0.01)
-            k++;
-        double from = lesson_beat_at(c, r->from, before) - 0.12,
-               due = lesson_beat_at(c, r->to, c->segment[k]), to = due + 0.12;
-        for (k = 0; k < l->count && n < 512; k++) {
-            lesson_played *p = &l->played[k];
-            double asked = p->of < 0 ? NAN : l->asked[p->of].time;
-            bool in = r->written ? p->of < 0 && p->strike.time >= from && p->strike.time < to
-                                 : asked > r->from - 1e-6 && asked < r->to + 1e-6;
-            if (!in)
-                continue;
-            p->roll = i;
-            t[n] = p->strike.time - l->lead[p->strike.hand],
-            level[n++] = 20 * log10(p->strike.velocity);
-            // what goes on after its time, without a pause, is the same roll
-            if (r->written && n > 1 && t[n - 1] > due - 0.12)
-                to = fmax(to, t[n - 1] + 1.6 * (t[n - 1] - t[0]) / (n - 1));
+        if (hypot(x.x - middle.x, x.y - middle.y) < least) {
+            least = hypot(x.x - middle.x, x.y - middle.y);
+            found = drum;
         }
-        judge_roll(l, r, t, level, n);
-        for (k = 1; k < n; k++)
-            interval[k - 1] = t[k] - t[k - 1];
-        if (r->written)
-            judge_length(l, r, due, n ? t[n - 1] : due, lesson_median(interval, n - (n > 0)));
     }
+    return found;
 }
 
-#define LISTED 64 // characters of strokes that are listed, in whole entries of 32 at most
-#define ENTRY 32
+/// Strokes on another drum than the score's, named and taken away.
+static void judge_drums(lesson *l, lesson_course *c)
+{
+    lesson_list list = {.count = 0};
+    for (int k = 0; k < c->n; k++) {
+        lesson_played *p = &l->played[c->stroke[k]];
+        const lesson_asked *a = &l->asked[p->of];
+        const char *drum =
+            hypot(p->aside.x, p->aside.y) > ON_DRUM ? other_drum(l, c, p->strike.x, a->drum) : NULL;
+        if (!drum)
+            continue;
+        p->named = true;
+        c->value[0][k] = c->value[1][k] = 0;
+        lesson_list_add(&list, "beat %g on %s instead of %s", a->beat, drum, a->drum);
+    }
+    lesson_fault *f = lesson_fault_add(l, "spot", list.count, 0, 0, 0.01);
+    if (!f)
+        return;
+    himc_format(f->what, sizeof f->what, "%d stroke%s on the wrong drum: %s", list.count,
+                list.count > 1 ? "s are" : " is", lesson_list_text(&list));
+    snprintf(f->how, sizeof f->how, "where the take has each drum's other strokes");
+    lesson_fault_explain(f, 0, list.count > 1 ? "strokes" : "stroke", "the score names the drum");
+    f->threshold = 1;
+}
+
+// strokes too few or too many
+static void tell_count(lesson *l, const char *kind, const char *what, lesson_list *list)
+{
+    lesson_fault *f = lesson_fault_add(l, kind, list->count, 0, 0, 0.01);
+    if (!f)
+        return;
+    himc_format(f->what, sizeof f->what, "%d stroke%s %s: %s", list->count,
+                list->count > 1 ? "s" : "", what, lesson_list_text(list));
+    snprintf(f->how, sizeof f->how, "%d strokes asked, %d matched, %d played", l->asked_count,
+             l->matched, l->count);
+    lesson_fault_explain(f, 0, list->count > 1 ? "strokes" : "stroke", lesson_none_source);
+    f->threshold = 1;
+}
+
+// true if the take does not show the stick where the stroke is due
+static bool in_gap(const lesson *l, const lesson_course *c, const lesson_asked *a)
+{
+    int k = 0;
+    while (k + 1 < c->n && c->asked[k + 1] <= a->time)
+        k++;
+    double due = lesson_beat_at(c, a->time, c->segment[k]);
+    for (const lesson_gap *g = l->gap; g < l->gap + l->gaps; g++)
+        if (g->hand == a->hand && due > g->from - NEAR_GAP && due < g->to + NEAR_GAP)
+            return true;
+    return false;
+}
 
 // strokes without a partner
-static void judge_missing(lesson *l)
+static void judge_missing(lesson *l, const lesson_course *c)
 {
-    char beats[2][LISTED + 2 * ENTRY] = {"", ""};
-    int alone = 0, listed[2] = {0}; // missing, but not with a phrase
+    lesson_list missing = {.count = 0}, extra = {.count = 0};
     for (int k = 0; k < l->asked_count; k++) {
-        const lesson_asked *a = &l->asked[k];
+        lesson_asked *a = &l->asked[k];
         if (a->by >= 0 || !l->seen[a->hand])
             continue;
-        l->missing++;
-        if (a->skipped)
-            continue;
-        alone++;
-        size_t used = strlen(beats[0]);
-        if (used < LISTED && ++listed[0])
-            snprintf(beats[0] + used, ENTRY, "%s%s at beat %g", used ? ", " : "",
-                     himc_hand_name(a->hand), a->beat);
+        a->unseen = !a->skipped && in_gap(l, c, a);
+        l->unseen += a->unseen;
+        l->missing += !a->unseen;
+        if (!a->skipped && !a->unseen)
+            lesson_list_add(&missing, "%s at beat %g", himc_hand_name(a->hand), a->beat);
     }
+    double beat = NAN; // of the last matched stroke
     for (int k = 0; k < l->count; k++) {
         const lesson_played *p = &l->played[k];
+        if (p->of >= 0)
+            beat = l->asked[p->of].beat;
         if (p->of >= 0 || p->roll >= 0)
             continue;
         l->extra++;
-        size_t used = strlen(beats[1]);
-        if (used < LISTED && ++listed[1])
-            snprintf(beats[1] + used, ENTRY, "%s%s at %.2f s", used ? ", " : "",
-                     himc_hand_name(p->strike.hand), p->strike.time);
+        if (isfinite(beat))
+            lesson_list_add(&extra, "%s after beat %g (%.2f s)", himc_hand_name(p->strike.hand),
+                            beat, p->strike.time);
+        else
+            lesson_list_add(&extra, "%s at %.2f s", himc_hand_name(p->strike.hand), p->strike.time);
     }
-    const int count[] = {alone, l->extra};
-    for (int k = 0; k < 2; k++)
-        if (count[k] > listed[k])
-            snprintf(beats[k] + strlen(beats[k]), ENTRY, " and %d more", count[k] - listed[k]);
-    for (int k = 0; k < 2; k++) {
-        lesson_fault *f = lesson_fault_add(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
-        if (!f)
-            continue;
-        himc_format(f->what, sizeof f->what, "%d stroke%s %s: %s", count[k],
-                    count[k] > 1 ? "s" : "", k ? "too many" : "missing", beats[k]);
-        snprintf(f->how, sizeof f->how, "%d strokes asked, %d matched, %d played", l->asked_count,
-                 l->matched, l->count);
-        lesson_fault_explain(f, 0, count[k] > 1 ? "strokes" : "stroke", lesson_none_source);
-        f->threshold = 1;
-    }
+    tell_count(l, "missing", "missing", &missing);
+    tell_count(l, "extra", "too many", &extra);
 }
 
 // strokes of the other hand than the score's
 static void judge_hands(lesson *l)
 {
-    char beats[80] = "";
-    int count = 0, listed = 0;
+    lesson_list beats = {.count = 0};
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
-        if (a->by < 0 || l->played[a->by].strike.hand == a->hand)
-            continue;
-        size_t used = strlen(beats);
-        if (used < sizeof beats - 30 && ++listed)
-            snprintf(beats + used, sizeof beats - used, "%s%g", used ? ", " : "", a->beat);
-        count++;
+        if (a->by >= 0 && l->played[a->by].strike.hand != a->hand)
+            lesson_list_add(&beats, "%g", a->beat);
     }
-    if (count > listed)
-        himc_format(beats + strlen(beats), 20, " and %d more", count - listed);
-    lesson_fault *f = lesson_fault_add(l, "hand", count, 0, 0, 0.01);
+    lesson_fault *f = lesson_fault_add(l, "hand", beats.count, 0, 0, 0.01);
     if (!f)
         return;
-    if (count > 0.9 * l->matched)
+    if (beats.count > 0.9 * l->matched)
         snprintf(f->what, sizeof f->what,
-                 "The hands are exchanged: %d of %d strokes are played by the other hand", count,
-                 l->matched);
+                 "The hands are exchanged: %d of %d strokes are played by the other hand",
+                 beats.count, l->matched);
     else
-        snprintf(f->what, sizeof f->what, "%d stroke%s played by the other hand: beat %s", count,
-                 count > 1 ? "s are" : " is", beats);
+        himc_format(f->what, sizeof f->what, "%d stroke%s played by the other hand: beat %s",
+                    beats.count, beats.count > 1 ? "s are" : " is", lesson_list_text(&beats));
     snprintf(f->how, sizeof f->how, "%d strokes matched; or the take names its sticks otherwise",
              l->matched);
-    lesson_fault_explain(f, 0, count > 1 ? "strokes" : "stroke", "the score names the hand");
+    lesson_fault_explain(f, 0, beats.count > 1 ? "strokes" : "stroke", "the score names the hand");
     f->threshold = 1;
 }
 
-// places of the strokes about their median, with the take turned by so many right angles; returns
-// the sum of their distances from the medians of each hand and of both
+// of the strokes on a drum (NULL: on all), by a hand (HIMC_HANDS: both), the middle of their places
+static void middle_of(const lesson *l, lesson_course *c, const char *drum, int hand,
+                      double middle[2])
+{
+    for (int axis = 0; axis < 2; axis++) {
+        int n = 0;
+        for (int k = 0; k < c->n; k++) {
+            const lesson_played *p = &l->played[c->stroke[k]];
+            if ((hand == HIMC_HANDS || (int)p->strike.hand == hand) &&
+                (!drum || !strcmp(l->asked[p->of].drum, drum)))
+                c->scratch[n++] = c->value[1 + axis][k];
+        }
+        middle[axis] = lesson_median(c->scratch, n);
+    }
+}
+
+// places of the strokes about their median, if the drums are apart of each drum's, with the take
+// turned by so many right angles; returns the sum of their distances from the medians of each hand
+// and of both
 static double place(const lesson *l, lesson_course *c, int turn)
 {
     static const double cosine[] = {1, 0, -1, 0};
@@ -571,28 +638,29 @@ static double place(const lesson *l, lesson_course *c, int turn)
         c->value[1][k] = co * x.x - si * x.y - a.x;
         c->value[2][k] = si * x.x + co * x.y - a.y;
     }
-    double middle[3][3] = {{0}}; // of the left hand, the right, both
-    for (int axis = 1; axis < 3; axis++)
-        for (int hand = 0; hand < 3; hand++) {
-            int n = 0;
-            for (int k = 0; k < c->n; k++)
-                if (hand == 2 || (int)l->played[c->stroke[k]].strike.hand == hand)
-                    c->scratch[n++] = c->value[axis][k];
-            middle[axis][hand] = lesson_median(c->scratch, n);
+    for (int first = 0; first < c->n; first++) { // of each drum, or of all
+        const char *drum = l->apart ? l->asked[l->played[c->stroke[first]].of].drum : NULL;
+        double middle[HIMC_HANDS + 1][2];
+        bool done = !drum && first > 0;
+        for (int k = 0; drum && k < first && !done; k++)
+            done = !strcmp(l->asked[l->played[c->stroke[k]].of].drum, drum);
+        for (int hand = 0; hand <= HIMC_HANDS && !done; hand++)
+            middle_of(l, c, drum, hand, middle[hand]);
+        for (int k = first; k < c->n && !done; k++) {
+            const lesson_played *p = &l->played[c->stroke[k]];
+            const double *own = middle[p->strike.hand], *both = middle[HIMC_HANDS];
+            if (drum && strcmp(l->asked[p->of].drum, drum) != 0)
+                continue;
+            // chosen: a hand's own spots tell the direction better than the other hand does
+            sum += 4 * hypot(c->value[1][k] - own[0], c->value[2][k] - own[1]);
+            sum += hypot(c->value[1][k] -= both[0], c->value[2][k] -= both[1]);
         }
-    for (int k = 0; k < c->n; k++) {
-        const double *x = middle[1], *y = middle[2];
-        int hand = (int)l->played[c->stroke[k]].strike.hand;
-        // chosen: a hand's own spots tell the direction better than the other hand does
-        sum += 4 * hypot(c->value[1][k] - x[hand], c->value[2][k] - y[hand]);
-        sum += hypot(c->value[1][k] -= x[2], c->value[2][k] -= y[2]);
     }
     return sum;
 }
 
-// levels about the take's mean; places in the direction that fits best, as tips alone hardly show
-// where the player faces
-static void measure(lesson *l, lesson_course *c)
+// the direction in which the places fit best, as tips alone hardly show where the player faces
+static void find_turn(lesson *l, lesson_course *c)
 {
     int turn = 0;
     double least = 0.9 * place(l, c, 0), next = INFINITY; // chosen: its own direction is likelier
@@ -605,6 +673,34 @@ static void measure(lesson *l, lesson_course *c)
     place(l, c, turn);
     l->turn = 90 * turn;
     l->turn_sure = next > 1.25 * least; // chosen
+}
+
+// true if a drum's strokes are together so far from their place that it will stand elsewhere
+static bool stand_otherwise(const lesson *l, lesson_course *c)
+{
+    for (int k = 0; k < c->n; k++) {
+        double middle[2];
+        int count = 0;
+        const char *drum = l->asked[l->played[c->stroke[k]].of].drum;
+        for (int i = 0; i < c->n; i++)
+            count += !strcmp(l->asked[l->played[c->stroke[i]].of].drum, drum);
+        if (count < LESSON_FEWEST ||
+            (k && !strcmp(l->asked[l->played[c->stroke[k - 1]].of].drum, drum)))
+            continue;
+        middle_of(l, c, drum, HIMC_HANDS, middle);
+        if (hypot(middle[0], middle[1]) > ELSEWHERE)
+            return true;
+    }
+    return false;
+}
+
+// levels about the take's mean, and places
+static void measure(lesson *l, lesson_course *c)
+{
+    find_turn(l, c);
+    l->apart = stand_otherwise(l, c);
+    if (l->apart)
+        find_turn(l, c);
     for (int k = 0; k < c->n; k++) {
         lesson_played *p = &l->played[c->stroke[k]];
         p->off = c->value[0][k];
@@ -616,13 +712,32 @@ static void measure(lesson *l, lesson_course *c)
         l->played[c->stroke[k]].level -= l->level;
 }
 
+// false for strokes that are hardly those of the score: too many, or on no steady beat
+static bool fits(const lesson *l, const lesson_course *c, double wild, himc_error *error)
+{
+    bool whole = 10 * l->matched >= 9 * l->due && fabs(log2(l->tempo.mean)) < 0.5;
+    if (l->extra > l->matched && !whole)
+        return himc_error_set(error,
+                              "%s does not match %s: %d of %d strokes of the take found in the "
+                              "score, expected at least half of them",
+                              l->take, l->score, l->matched, l->matched + l->extra);
+    return wild < fmax(WILD, WILD_SHARE * c->interval) ||
+           himc_error_set(error,
+                          "%s does not match %s: its strokes are %.0f ms off any steady beat, "
+                          "expected less than %.0f",
+                          l->take, l->score, 1e3 * wild,
+                          1e3 * fmax(WILD, WILD_SHARE * c->interval));
+}
+
 bool lesson_judge(lesson *l, himc_error *error)
 {
     lesson_course c;
     bool good = lesson_course_new(l, &c);
+    double wild = 0;
     if (good) {
+        wild = lesson_spread(&c, c.value[0]);
         measure(l, &c);
-        find_runs(l);
+        lesson_find_runs(l);
     }
     l->jnd = lesson_jnd(c.interval);
     const quantity quantities[] = {
@@ -635,8 +750,12 @@ bool lesson_judge(lesson *l, himc_error *error)
             c.value[0][k] = q == 0 ? p->off : q == 1 ? p->level : p->aside.x;
             c.value[1][k] = p->aside.y;
         }
-        if (q == 1)
+        if (q == 1) {
             judge_swells(l, &c);
+            judge_drift(l, &c);
+        }
+        if (q == 2)
+            judge_drums(l, &c);
         good = judge_groups(l, &c, &quantities[q]);
         if (good && q < 2)
             judge_even(l, &c, &quantities[q]);
@@ -646,10 +765,11 @@ bool lesson_judge(lesson *l, himc_error *error)
             judge_singles(l, &c, &quantities[q]);
     }
     if (good) {
-        judge_rolls(l, &c);
-        judge_missing(l);
+        lesson_judge_rolls(l, &c);
+        judge_missing(l, &c);
         judge_hands(l);
     }
+    good = good ? fits(l, &c, wild, error) : himc_error_set(error, "out of memory");
     lesson_course_free(&c);
-    return good || himc_error_set(error, "out of memory");
+    return good;
 }

@@ -354,11 +354,12 @@ bool lesson_match(lesson *l, himc_error *error)
     join_chords(l);
     for (int k = 0; k < l->asked_count; k++)
         l->due += l->seen[l->asked[k].hand];
-    // chosen: with fewer no figure could be trusted
+    // chosen: with fewer no figure could be trusted; a part of the score is played as a whole
     return (l->matched >= 3 && 2 * l->matched >= l->due) ||
+           (l->matched >= 8 && 10 * l->matched >= 9 * l->count) ||
            himc_error_set(
                error,
                "%s does not match %s: %d of %d strokes found, expected at least 3 and at "
-               "least half of them",
+               "least half of them, or nearly all that the take has",
                l->take, l->score, l->matched, l->due);
 }

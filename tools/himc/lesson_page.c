@@ -18,6 +18,7 @@
 #define WIDE 360.0 // of a picture
 #define LEFT 34.0  // of its axis
 #define HIGH 110.0 // of a plot
+#define NAMED " stroke=#c00 stroke-width=2" // of a stroke that a fault is about
 
 /// A number of a played stroke: in the CSV, in the table of all strokes (`shown`), and as a mean of
 /// each hand (`mean`); published figures beside the latter.
@@ -111,6 +112,13 @@ static void put_head(const lesson *l, FILE *out)
         "score has %g. On the whole you play %.1f dB %s than the model at the score's dynamics.",
         l->matched, l->due, l->missing, l->extra, l->bpm * l->tempo.mean,
         SURE * l->bpm * l->tempo.u, l->bpm, fabs(l->level), l->level < 0 ? "softer" : "louder");
+    if (l->unseen)
+        fprintf(out, " Where %d stroke%s due, the take has a gap: whether %s played is not known.",
+                l->unseen, l->unseen > 1 ? "s are" : " is", l->unseen > 1 ? "they were" : "it was");
+    if (l->apart)
+        fputs(" The drums stand otherwise than in the score (<code>place</code>): places are "
+              "measured on each drum alone, and a drum that is missed as a whole is not told.",
+              out);
     for (int h = 0; h < HIMC_HANDS; h++)
         if (!l->seen[h])
             fprintf(out, " The take does not show the %s stick; its strokes are not judged.",
@@ -156,10 +164,11 @@ static void put_faults(const lesson *l, FILE *out)
             "<p><b>Nothing stands out.</b> No difference is both beyond your own spread and beyond "
             "its threshold: %.1f ms in this tempo, %g dB, %g mm.</p>",
             1e3 * l->jnd, LESSON_JND_LEVEL, 1e3 * LESSON_PLACE);
-    fprintf(out,
-            "<p>Your strokes lie %.1f ms off your own beat and %.1f dB off the written dynamics "
-            "(RMS). The more they scatter, the larger a difference must be to be named.</p>",
-            1e3 * seconds, decibels);
+    fprintf(
+        out,
+        "<p>Your strokes lie %.1f ms off your own beat and %.1f dB off the written dynamics "
+        "(root mean square, a usual size of the differences). The more they scatter, the larger a difference must be to be named.</p>",
+        1e3 * seconds, decibels);
     if (l->faults > LESSON_NAMED)
         fprintf(out, "<p><small>%d more are beyond their thresholds, by less.</small></p>",
                 l->faults - LESSON_NAMED);
@@ -226,6 +235,21 @@ static void put_timeline(const lesson *l, FILE *out)
         fprintf(out, "<p><small>Here are the first %g s; --csv has all.</small></p>", LINES * LINE);
 }
 
+// beats under a plot of all strokes
+static void put_beats(const lesson *l, double first, double scale, FILE *out)
+{
+    double next = 0;
+    for (int k = 0; k < l->asked_count; k++) {
+        const lesson_asked *a = &l->asked[k];
+        double x = a->by < 0 ? -1 : LEFT + 4 + (l->played[a->by].strike.time - first) * scale;
+        if (x < next || x > WIDE - 12)
+            continue;
+        fprintf(out, "<text x=%.1f y=%g>%s%g</text>", x - 3, HIGH + 9, next > 0 ? "" : "beat ",
+                a->beat);
+        next = x + WIDE / 9;
+    }
+}
+
 // one hand's times (ms, early above) or levels (dB) over time; `band`: the threshold
 static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FILE *out)
 {
@@ -235,7 +259,7 @@ static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FI
         most = fmax(most, 1.1 * fabs(time ? 1e3 * l->played[k].off : l->played[k].level));
     double up = (middle - 8) / most, mean = 0, n = 0;
     fprintf(out, "<svg viewBox='0 0 %g %g'><rect x=%g y=%.1f width=%g height=%.1f fill='#e6f4e6'/>",
-            WIDE, HIGH, LEFT, middle - band * up, WIDE - LEFT, 2 * band * up);
+            WIDE, HIGH + 12, LEFT, middle - band * up, WIDE - LEFT, 2 * band * up);
     fprintf(out,
             "<path d='M%g %gH%g' stroke='#888'/><text y=10>%.0f %s</text><text y=%g>0</text>"
             "<text y=%g>%.0f %s</text><text x=%g y=10 class=%s>%s hand</text>",
@@ -249,11 +273,12 @@ static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FI
             continue;
         fprintf(out, "<path d='M%.1f %.1fV%.1f' stroke='#999'/>", x, middle - (y + u) * up,
                 middle - (y - u) * up);
-        put_mark(out, x, middle - y * up, 2.5, hand, "");
+        put_mark(out, x, middle - y * up, p->named ? 4 : 2.5, hand, p->named ? NAMED : "");
         mean += (y - mean) / ++n;
     }
     fprintf(out, "<path d='M%g %.1fH%g' stroke='#888' stroke-dasharray=4 />", LEFT,
             middle - mean * up, WIDE);
+    put_beats(l, first, scale, out);
     fputs("</svg>\n", out);
 }
 
@@ -267,9 +292,10 @@ static void put_plots(const lesson *l, FILE *out)
     for (int what = 0; what < 2; what++) {
         fprintf(
             out,
-            "<h2>%s. Green: within the threshold, %.1f %s%s. Dashed: the hand's mean; hands whose "
-            "means are further apart than that are named. Bars: standard uncertainty by the "
-            "camera.</small></p><div class=g>",
+            "<h2>%s. Green: within the threshold, %.1f %s%s. Dashed: the hand's mean; hands are named "
+            "if their means are further apart than that even with the 99 %% bound of what your "
+            "strokes' spread leaves open. Red rings: strokes that are named. Bars: uncertainty by "
+            "the camera.</small></p><div class=g>",
             heads[what], band[what], what ? "dB" : "ms",
             what ? "" : " (listeners notice 6 ms, or 2.5 % of longer intervals)");
         for (int h = 0; h < HIMC_HANDS; h++)
@@ -341,12 +367,12 @@ static void put_rolls(const lesson *l, FILE *out)
             continue;
         if (!any)
             fputs(
-                "<h2>Rolls and fast runs</h2><div class=t><table><tr><th>played at<th>strokes<th>a "
+                "<h2>Rolls and fast runs</h2><div class=t><table><tr><th>beat<th>strokes<th>a "
                 "second<th>unevenness (ms)<th>every second one late by (ms)<th>loudness spread (dB)",
                 out);
         any = true;
-        fprintf(out, "<tr><td>%.1f s<td>%d<td>%.1f<td>%.1f ± %.1f<td>%.1f ± %.1f<td>%.1f\n",
-                r->begin, r->strokes, r->rate, 1e3 * r->uneven, SURE * 1e3 * r->u, 1e3 * r->gallop,
+        fprintf(out, "<tr><td>%g<td>%d<td>%.1f<td>%.1f ± %.1f<td>%.1f ± %.1f<td>%.1f\n", r->beat,
+                r->strokes, r->rate, 1e3 * r->uneven, SURE * 1e3 * r->u, 1e3 * r->gallop,
                 SURE * 1e3 * r->u_gallop, r->spread);
     }
     fputs(any ? "</table></div>" : "", out);
@@ -373,8 +399,10 @@ static void put_table(const lesson *l, FILE *out)
         const char *hand = himc_hand_name(a->hand);
         if (!l->seen[a->hand])
             continue;
-        fprintf(out, "\n<tr%s><td>%g<td class=%s>%s%s", p ? "" : " class=bad", a->beat, hand, hand,
-                !p                          ? " missing"
+        fprintf(out, "\n<tr%s><td>%g<td class=%s>%s%s", p && !p->named ? "" : " class=bad", a->beat,
+                hand, hand,
+                a->unseen                   ? " not seen"
+                : !p                        ? " missing"
                 : p->strike.hand != a->hand ? " (played by the other)"
                                             : "");
         for (const column *c = columns; c < columns + COLUMNS; c++)
@@ -401,7 +429,7 @@ void lesson_page(const void *of, FILE *out)
 static void put_row(const lesson_asked *a, const lesson_played *p, FILE *out)
 {
     const char *state = a && p         ? a->hand == p->strike.hand ? "played" : "other-hand"
-                        : a            ? "missing"
+                        : a            ? a->unseen ? "unseen" : "missing"
                         : p->roll >= 0 ? "roll"
                                        : "extra";
     fprintf(out, "\n%s,%s,%s", state, himc_hand_name(p ? p->strike.hand : a->hand),
@@ -432,10 +460,11 @@ void lesson_json(const lesson *l, FILE *out)
 {
     fprintf(
         out,
-        "{\"asked\": %d, \"matched\": %d, \"missing\": %d, \"extra\": %d, \"rate_hz\": %g, \"tempo_bpm\": "
-        "%.3f, \"tempo_uncertainty_bpm\": %.3f, \"level_db\": %.3f, \"turned_deg\": %d, \"turned_sure\": %s, \"faults\": [",
-        l->due, l->matched, l->missing, l->extra, l->rate, l->bpm * l->tempo.mean,
-        l->bpm * l->tempo.u, l->level, l->turn, l->turn_sure ? "true" : "false");
+        "{\"asked\": %d, \"matched\": %d, \"missing\": %d, \"unseen\": %d, \"extra\": %d, \"rate_hz\": %g, \"tempo_bpm\": "
+        "%.3f, \"tempo_uncertainty_bpm\": %.3f, \"level_db\": %.3f, \"turned_deg\": %d, \"turned_sure\": %s, \"drums_apart\": %s, \"faults\": [",
+        l->due, l->matched, l->missing, l->unseen, l->extra, l->rate, l->bpm * l->tempo.mean,
+        l->bpm * l->tempo.u, l->level, l->turn, l->turn_sure ? "true" : "false",
+        l->apart ? "true" : "false");
     for (int k = 0; k < l->faults; k++) {
         const lesson_fault *f = &l->fault[k];
         fprintf(out, "%s{\"kind\": \"%s\", \"what\": ", k ? ", " : "", f->kind);
