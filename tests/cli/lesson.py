@@ -232,6 +232,15 @@ def test_one_take_is_told_the_same_at_any_rate():
     assert told["matched"] == 22 and told["extra"] == 0 and not told["faults"], told
 
 
+def test_two_tips_over_one_drum_need_no_unit():
+    rows = model_motion()
+    told_of(rows)
+    with open(path("tips.csv")) as file:
+        text = file.read()
+    status, out, err = lesson(path("motion.txt", EXERCISE), path("bare.csv", text.replace("_m", "", text.index("\n"))), "--json")
+    assert status == 0 and json.loads(out)["matched"] == 22, err
+
+
 def test_rows_at_uneven_times_are_told_as_at_even_ones():
     rows = model_motion()
     middle = rows[len(rows) // 2][0]

@@ -191,6 +191,8 @@ static bool settle_markers(himc_take *take, double *unit, himc_error *error)
         // chosen: a spread below 5 % of the whole is that of one marker
         double size = typical > 0.05 * all ? typical : all;
         *unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
+        if (*unit == 0) // two tips over one drum are nearer to each other than a forearm is long
+            *unit = guess_unit(all, LEAST_SPREAD, MOST_SPREAD, METRIC);
         *unit = far * *unit <= 100 ? *unit : 0;
     }
     // one marker may hardly move: a small size that no other unit explains is accepted
