@@ -23,7 +23,10 @@ __all__ = ["evaluate", "map"]
 def map(function: Callable, items: Iterable) -> list:  # as multiprocessing.Pool.map
     """``function`` of each item, in the items' order, on whichever machines are free."""
     remote = ray.remote(function)
-    return ray.get([remote.remote(item) for item in items])
+    try:
+        return ray.get([remote.remote(item) for item in items])
+    except ray.exceptions.RayTaskError as failed:  # which has the worker's traceback around it
+        raise failed.cause from None
 
 
 def evaluate(trials: int = 100, parts: int = 1, only: str = "") -> str:

@@ -59,7 +59,7 @@ class Ray(unittest.TestCase):
 
     def test_wrong_words_are_one_line(self):
         for parts, only, line in ((0, ONLY, "parts: 0, expected 1 .. 2"), (3, ONLY, "parts: 3"), (1, "legatto", "--only: legatto")):
-            with self.assertRaisesRegex(Exception, line):
+            with self.assertRaisesRegex(himc.Error, "^(himc evaluate: )?" + line):
                 trials.evaluate(2, parts, only)
 
 

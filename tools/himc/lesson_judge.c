@@ -1,7 +1,7 @@
 /// lesson_judge.c: what the matched strokes show, and which of it is worth practising.
 ///
 /// Times are off the player's own beat (lesson_beat.c). For each of time, level and place the
-/// strokes of a hand, of a place in the beat, of a nuance and of a spot are compared with the
+/// strokes of a hand, of a place in beat and bar, of a nuance and of a spot are compared with the
 /// others (Welch); the largest difference is named and taken away, then the next, so one fault is
 /// named once. Then single strokes are compared with the player's own spread.
 #include "lesson_beat.h"
@@ -41,7 +41,6 @@ static const char even_level_source[] =
 #define WAVERS 0.5 // (dB) of asked strokes that are alike
 #define STEP 0.6   // share of a swell in one step: no swell, but another dynamic
 #define DRIFT 2.0  // (dB) of loudness, over the whole take; chosen: as a dynamic's half
-
 static const char drift_source[] =
     "chosen: 2 dB over the whole take; no listeners' threshold is published";
 
@@ -175,29 +174,30 @@ static void tell_spot(lesson_fault *f, const lesson *l, const lesson_course *c, 
                       const int *group, const char *who, const char *others)
 {
     char place[64];
-    double asked, played;
-    bool whole = true; // all that a drum has
+    double asked = NAN, played = NAN;
+    bool whole = d->kind == SPOT; // all that a drum has
+    const lesson_asked *one = &l->asked[whole ? d->id : 0], *other = NULL;
     name_place(d, place, sizeof place);
-    const lesson_asked *other = spots_apart(l, c, d, group, &asked, &played);
+    if (whole)
+        other = spots_apart(l, c, d, group, &asked, &played);
     for (int k = 0; k < c->n; k++)
-        whole =
-            whole && (group[k] == d->id ||
-                      strcmp(l->asked[d->id].drum, l->asked[l->played[c->stroke[k]].of].drum) != 0);
+        whole = whole && (group[k] == d->id ||
+                          strcmp(one->drum, l->asked[l->played[c->stroke[k]].of].drum) != 0);
     if (d->kind == HAND) // who is right is not known, here and in time
         himc_format(f->what, sizeof f->what,
                     "The hands' places are %.0f mm apart: the left's, seen from the right's, %s",
                     f->effect, place);
-    else if (d->kind == SPOT && asked > 2 * LESSON_PLACE && played < LESSON_PLACE)
+    else if (other && asked > 2 * LESSON_PLACE && played < LESSON_PLACE)
         himc_format(f->what, sizeof f->what,
                     "The spots of beat %g and beat %g (%s) are played on one place: %.0f mm apart "
                     "are asked",
-                    l->asked[d->id].beat, other->beat, other->drum, 1e3 * asked);
+                    one->beat, other->beat, other->drum, 1e3 * asked);
     else
         himc_format(f->what, sizeof f->what,
                     "%s land %.0f mm beside their place (%s), measured from %s", who, f->effect,
                     place, others);
     snprintf(f->how, sizeof f->how, "%d strokes against %d%s", d->in, d->out,
-             d->kind == SPOT && whole ? "; or the drum stands so far from the score's place" : "");
+             whole ? "; or the drum stands so far from the score's place" : "");
 }
 
 static void tell_group(lesson *l, const lesson_course *c, const quantity *q, const int *group,
