@@ -271,7 +271,7 @@ def write_body(path, strikes, high, rate, draw, noise=0.001):
         shoulder = [-0.72, 0.18 * side, 0.4]
         at = [BASE["normal"], 0.015 * side, 0]
         swivel, wanted = 0.0, draw.uniform(60, 75) if hand in high else draw.uniform(15, 33)
-        while swivel < math.pi / 2 and raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]) < wanted:
+        while swivel < math.pi and raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]) < wanted:
             swivel += 0.005
         angle[hand] = min(wanted, raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]))  # a long reach raises no elbow so far
         names += [f"{hand[0].upper()}{name}_{axis}_m" for name in (*ARM, "TIP") for axis in "xyz"]
