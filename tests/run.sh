@@ -9,6 +9,7 @@
 PATH=/usr/bin:$PATH # Debian's python3, for which deps installs numpy, before one of the user's own
 export HIMC_BUILD TEST_TIMEOUT PATH
 logs=$HIMC_BUILD/tests/logs
+times=$HIMC_BUILD/tests/times
 
 # runs one program; leaves its output in NAME.log and `passed failed ignored` in NAME.sum
 one() {
@@ -45,6 +46,7 @@ one() {
             printf "  (%s s)\n%s", time, lines
         }' "$logs/$name.log" >"$logs/$name.out"
     cat "$logs/$name.out"
+    echo "$time $1" >"$logs/$name.time"
 }
 
 if [ "$1" = --one ]; then
@@ -52,9 +54,13 @@ if [ "$1" = --one ]; then
     exit 0
 fi
 
+# what took longest in the run before begins first, and what has not run yet
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | xargs -r -n 1 -P "$JOBS" "$0" --one
+touch "$times"
+printf '%s\n' "$@" | awk 'FILENAME != "-" { took[$2] = $1; next } { print ($1 in took ? took[$1] : 1e6), $1 }' "$times" - |
+    sort -s -k 1,1nr | cut -d ' ' -f 2 | xargs -r -n 1 -P "$JOBS" "$0" --one
+cat "$logs"/*.time "$times" /dev/null | sort -s -u -k 2,2 >"$times.new" && mv "$times.new" "$times"
 cat "$logs"/*.sum /dev/null | awk -v programs=$# '
     { passed += $1; failed += $2; ignored += $3 }
     END {

@@ -141,7 +141,7 @@ def fitted(sound):
 def test_a_drum_rings_as_recorded():
     """with losses far from the usual ones: (1,1) .. (5,1) within 15 %, in a room that rings shorter or none"""
     said = []
-    for words in ("room 0; d tune A2; d decay 1;", "room 0; d tune A2; d decay 3;", "d tune A2; d decay 6;", "room 0; d tune A2; d skin calf;"):
+    for words in ("room 0; d tune A2; d decay 1;", "room 0; d tune A2; d decay 3;", "d tune A2; d decay 6;", "room 0; d tune A2; d skin calf;")[:: 1 if LONG else 2]:
         score, sound = struck("losses", 26, words)
         made, true = fitted(sound)[1], modes(score)
         said.append(["%.2f/%.2f" % (made[m][1], true[m][1]) for m in true])
@@ -152,7 +152,7 @@ def test_a_drum_rings_as_recorded():
 
 def test_a_drum_sounds_its_principal():
     """drums of no usual size or range: (1,1) within 5 cents, and it is said that the rest is not"""
-    for inches, tune in ((23, "A2"), (24, "D3")):
+    for inches, tune in ((23, "A2"), (24, "D3"))[: 2 if LONG else 1]:
         score, sound = struck("size", inches, f"d tune {tune};")
         notes, made = fitted(sound)
         cents = 1200 * math.log2(made[1][0] / modes(score)[1][0])
@@ -176,13 +176,13 @@ def test_a_drum_that_rings_otherwise_is_told():
 def test_an_offset_is_taken_out():
     """of the recorder, in each channel its own"""
     stroke = [x + d for x in rings(BAR) for d in (0.05, -0.02)]
-    found = json.loads(good("fit", write_wave("offset.wav", stroke, 2), "-o", path("offset.txt"), "--json"))["partials"]
+    found = json.loads(good("fit", write_wave("offset.wav", stroke, 2), "-o", path("offset.txt"), "--instrument", "modes", "--json"))["partials"]
     for f, t60, _ in BAR:
         assert any(abs(p["hz"] - f) < 0.1 and abs(p["t60_s"] / t60 - 1) < 0.03 for p in found), found
 
 
 def test_a_drum_is_named_as_its_file():
-    sound = write_wave("bar.wav", rings(BAR))
+    sound = write_wave("bar.wav", rings(BAR[:1], 1.0))
     for file, name in (("Pauke-1", "pauke1"), ("P\u00e4ukchen", "paukchen"), ("2\u00c9t\u00e9", "ete"), ("123", "fitted")):
         good("fit", sound, "-o", path(file + ".txt"), "--instrument", "modes")
         assert f"instrument {name} modes" in open(path(file + ".txt")).read(), file

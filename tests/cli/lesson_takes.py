@@ -271,9 +271,9 @@ def write_body(path, strikes, high, rate, draw, noise=0.001):
         shoulder = [-0.72, 0.18 * side, 0.4]
         at = [BASE["normal"], 0.015 * side, 0]
         swivel, wanted = 0.0, draw.uniform(60, 75) if hand in high else draw.uniform(15, 33)
-        while raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]) < wanted:
+        while swivel < math.pi and raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]) < wanted:
             swivel += 0.005
-        angle[hand] = wanted
+        angle[hand] = min(wanted, raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]))  # a long reach raises no elbow so far
         names += [f"{hand[0].upper()}{name}_{axis}_m" for name in (*ARM, "TIP") for axis in "xyz"]
         for row in rows:
             x = list(tip.at(row[0] + phase))

@@ -1,6 +1,6 @@
 #!/bin/sh
 # `himc lesson`: planted faults are named, nothing is invented. tests/cli/lesson.py has the tests, lesson_takes.py makes the takes.
-#   HIMC_LONG=1: 660 takes instead of some 50; HIMC_SEED=1000: takes that were never used for tuning
+#   HIMC_LONG=1: all takes instead of some 50; HIMC_SEED=1000: takes that were never used for tuning
 : "${HIMC_BUILD:=build}"
 export HIMC_BUILD
 if ! command -v python3 >/dev/null; then

@@ -40,13 +40,16 @@ done >"$work/missing"
 check test_each_figure_table_and_equation_of_the_papers_has_a_row [ "$(cat "$work/missing")" = "" ]
 
 mkdir "$work/kept"
-tools/research/papers/papers.sh docs/figures "$work/kept" >"$work/table"
+phases="0 3.5" # of ten
+[ -z "${HIMC_LONG-}" ] || phases=
+PHASES=$phases tools/research/papers/papers.sh docs/figures "$work/kept" >"$work/table"
 sed -n '/^| place |/,$p' docs/results/papers.md >"$work/documented"
 verdicts() {
     awk -F ' [|] ' '{ print $1, $(NF - 1), $NF }' "$1"
 }
 verdicts "$work/table" >"$work/verdicts"
 check test_verdicts_of_the_papers_are_those_of_today [ "$(verdicts "$work/documented" | diff - "$work/verdicts")" = "" ]
+sed -i 100q "$work/kept/motion.csv" # what follows spoils its numbers anyway
 # A verdict that no measured number moves is typed in. All numbers but those that name a row become others, in four ways, or larger by a
 # factor; a verdict that is the same each time must say so.
 for way in 1 2 3 4 "5 1.4" "6 2"; do

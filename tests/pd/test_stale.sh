@@ -12,9 +12,10 @@ play() { # play FOLDER: with the externals there
         >"$work/log" 2>&1 </dev/null
 }
 
-# the same library but for one more field in front of a drum's others
-mkdir "$work/sources" "$work/mixed"
-cp -r Makefile lib pd-externals tools mocap patches "$work/sources"
+# the same library but for one more field in front of a drum's others: made anew is what has that struct
+mkdir -p "$work/sources/build" "$work/mixed"
+cp -pr Makefile lib pd-externals tools mocap patches "$work/sources"
+cp -pr "$build/lib" "$work/sources/build"
 sed -i 's/^struct himc_drum {$/&\n    long changed;/' "$work/sources/lib/src/drum/drum_state.h"
 check test_the_struct_is_changed grep -q '    long changed;' "$work/sources/lib/src/drum/drum_state.h"
 MAKEFLAGS='' make -C "$work/sources" -j2 BUILD=build build/externals/himc/membrane~.pd_linux >"$work/log" 2>&1

@@ -171,11 +171,14 @@ himc_linear himc_linear_vibrations(int n, const double *k, const double *m, doub
     return attempt([=] {
         if (Eigen::LLT<columns>(given(m, n, n)).info() != Eigen::Success)
             return HIMC_LINEAR_NOT_DEFINITE;
-        Eigen::GeneralizedSelfAdjointEigenSolver<columns> modes(given(k, n, n), given(m, n, n));
+        Eigen::GeneralizedSelfAdjointEigenSolver<columns> modes(
+            given(k, n, n), given(m, n, n),
+            (v ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly) | Eigen::Ax_lBx);
         if (modes.info() != Eigen::Success)
             return HIMC_LINEAR_UNSOLVED;
         Eigen::Map<vector>(lambda, n) = modes.eigenvalues();
-        Eigen::Map<columns>(v, n, n) = modes.eigenvectors();
+        if (v)
+            Eigen::Map<columns>(v, n, n) = modes.eigenvectors();
         return HIMC_LINEAR_SOLVED;
     });
 }

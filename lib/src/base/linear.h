@@ -33,7 +33,7 @@ himc_linear himc_linear_least_squares(int rows, int terms, int columns, const do
 himc_linear himc_linear_eigenvalues(int n, const double *a, double *lambda, double *v);
 
 /// K v = lambda M v, both symmetric (n x n), M positive definite: all n eigenvalues, rising, and
-/// their eigenvectors, v' M v = 1, one after the other (n x n).
+/// their eigenvectors, v' M v = 1, one after the other (n x n); `v` may be NULL.
 himc_linear himc_linear_vibrations(int n, const double *k, const double *m, double *lambda,
                                    double *v);
 

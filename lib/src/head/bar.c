@@ -207,18 +207,16 @@ static void add_element(bar *b, bool odd, int i)
         }
 }
 
-static bool solve(bar *b, himc_error *error)
+// the even or the odd modes; a search needs no shapes, which take most of the time
+static bool solve(bar *b, bool odd, bool shapes, himc_error *error)
 {
-    for (int odd = 0; odd < 2; odd++) {
-        memset(b->k, 0, sizeof b->k);
-        memset(b->m, 0, sizeof b->m);
-        for (int i = 0; i < HALF; i++)
-            add_element(b, odd, i);
-        if (himc_linear_vibrations(FREE, b->k, b->m, b->lambda[odd], b->shape[odd]) !=
-            HIMC_LINEAR_SOLVED)
-            return himc_error_set(error, "bar: no modes found");
-    }
-    return true;
+    memset(b->k, 0, sizeof b->k);
+    memset(b->m, 0, sizeof b->m);
+    for (int i = 0; i < HALF; i++)
+        add_element(b, odd, i);
+    return himc_linear_vibrations(FREE, b->k, b->m, b->lambda[odd],
+                                  shapes ? b->shape[odd] : NULL) == HIMC_LINEAR_SOLVED ||
+           himc_error_set(error, "bar: no modes found");
 }
 
 // Of mode i, 0 .. : the first of the even ones and of the odd ones move without bending.
@@ -236,13 +234,16 @@ static double pitch(const bar *b)
 // Finds the length at which mode 1 sounds there, about as 1/L^2; `ratio`: of mode 2 then.
 static bool find_length(bar *b, double hz, double *ratio, himc_error *error)
 {
+    bool odd = b->row->tube; // is the mode that is heard
     for (int i = 0; i < STEPS; i++) {
-        if (!solve(b, error))
+        if (!solve(b, odd, false, error))
             return false;
         double off = pitch(b) / hz;
-        *ratio = frequency(b, 1) / frequency(b, 0);
-        if (fabs(off - 1) < EXACT)
-            return true;
+        if (fabs(off - 1) < EXACT) {
+            bool good = solve(b, !odd, false, error);
+            *ratio = frequency(b, 1) / frequency(b, 0);
+            return good;
+        }
         b->length *= sqrt(off);
     }
     return himc_error_set(error, "bar: %g Hz cannot be tuned", hz);
@@ -368,7 +369,7 @@ static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
     double shape[POINTS];
     b->thickness = r->thickness * pow(r->from / hz, r->thinner);
     b->width = r->width * pow(r->from / hz, r->narrower);
-    if (!tune(b, hz, error))
+    if (!tune(b, hz, error) || !solve(b, false, true, error) || !solve(b, true, true, error))
         return false;
     int modes = r->tube ? MODES_OF_TUBE : MODES, from = r->tube ? POINTS - 1 - CAP : 0;
     part =

@@ -2,6 +2,7 @@
 # papers.sh: one row of Markdown for each figure, table and claim of the three papers: the value there, the value here, the
 # verdict, the command that remakes it. From the repository's root, after make:
 #   tools/research/papers/papers.sh [FOLDER [KEPT]]
+# PHASES are the times (ms) at which a fourth stroke is played, ten if none are given; fewer change digits of two rows.
 # FOLDER has the tables of `make trials` (docs/figures). All else is measured here: three scores are played, the library is asked
 # (measure.c, its rows of commands). A verdict follows from these numbers (papers.awk), or is "stated". In KEPT all tables are left.
 set -eu
@@ -36,14 +37,15 @@ loud() {
           if (first && now < at[first] + rate / 2) sum[first] += $1 * $1 }
         END { for (i = 1; i <= count; i++) { n = rate / 2; if (i < count && at[i + 1] - at[i] < n) n = at[i + 1] - at[i]; print sqrt(sum[i] / n) } }' "$work/times" -
 }
-# phases COMMAND: the same of blows.txt, root mean square over ten times of the fourth stroke within a period of the principal mode
+# phases COMMAND: the same of blows.txt, root mean square over those times of the fourth stroke within a period of the principal mode
 # (7 ms): the head that still rings meets it at another phase each time
+times=${PHASES:-0 0.7 1.4 2.1 2.8 3.5 4.2 4.9 5.6 6.3}
 phases() {
-    for ms in 0 0.7 1.4 2.1 2.8 3.5 4.2 4.9 5.6 6.3; do
+    for ms in $times; do
         awk -v ms=$ms '$1 == "stroke" && $2 == 5.4 { $2 += ms / 1000 } 1' tools/research/figures/blows.txt >"$work/phase.txt"
         "$himc" render "$work/phase.txt" --channels 1 -o "$work/phase.wav" --strokes "$work/phase.csv" --set "$1" --quiet >/dev/null
         loud phase
-    done | awk '/rms/ { i = 0; next } { i++; sum[i] += $1 * $1; if (i > n) n = i } END { print "rms"; for (i = 1; i <= n; i++) print sqrt(sum[i] / 10) }'
+    done | awk '/rms/ { i = 0; rows++; next } { i++; sum[i] += $1 * $1; if (i > n) n = i } END { print "rms"; for (i = 1; i <= n; i++) print sqrt(sum[i] / rows) }'
 }
 phases 'coupling two-way' >"$work/loud.csv"
 phases 'coupling one-way' >"$work/loud-one-way.csv"
