@@ -13,9 +13,10 @@
 ///
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters of
 /// second order at the lower edge of the band and of fourth order at the upper one, all in three
-/// sections: two with zeros 1 - 1/z^2, and 1 + 2/z + 1/z^2. Its sequence begins anew with each
-/// contact, from a seed that is the place in steps of 2 cm: equal blows are equal to the last bit,
-/// and as soon as the place varies no two are. All is counted in samples, so how many are asked for
+/// sections: two with zeros 1 - 1/z^2, and 1 + 2/z + 1/z^2. It is a sum of two sequences that begin
+/// anew with each contact: one is the drum's, as shell and stand are, the other's seed is the
+/// place in steps of 2 cm. So equal blows are equal to the last bit, and as soon as the place varies
+/// no two are, but alike. All is counted in samples, so how many are asked for
 /// at a time does not matter. It takes no energy from the head and gives it none.
 ///
 /// A band that nobody would hear ends within some RISEs; the upper two, or all four, then rest.
@@ -38,6 +39,7 @@
 #define UNHEARD 2e-6      // of a level; chosen: 20 dB of sound pressure at 1 m, a quiet hall has 25
 #define SILENT 1e-8       // of a level that ends; chosen: -160 dB, no click
 #define PLACE 50       // seeds a metre; chosen: a mallet covers as much, blows within it are alike
+#define COMMON 0.8     // of the power; chosen: thirty strokes are as alike as a player's
 #define COHERENCE 0.65 // of the two rows; chosen: shell and stand are larger than a head
 #define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
 #define MEASURED 0.04  // (s) of a filter's response; chosen: the lowest band's is over
@@ -150,9 +152,10 @@ himc_stroke_noise himc_stroke_noise_at(double rate)
     return noise;
 }
 
-void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y)
+void himc_stroke_noise_begin(himc_stroke_noise *noise, int drum, double x, double y)
 {
     noise->state = (uint64_t)llround(PLACE * x) * 4096 + (uint64_t)llround(PLACE * y);
+    noise->common = (uint64_t)(drum + 1) << 36; // apart from all places
 }
 
 // a sample of the force feeds the bands
@@ -183,7 +186,7 @@ static void drive(himc_stroke_noise *noise, double force)
 void himc_stroke_noise_rest(himc_stroke_noise *noise)
 {
     noise->sounds = 0;
-    noise->state = 0;
+    noise->state = noise->common = 0;
     noise->force = noise->slope[0] = noise->slope[1] = noise->slope[2] = 0;
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
         noise->band[i].root = noise->band[i].level = 0;
@@ -230,9 +233,10 @@ static int run_chunk(himc_stroke_noise *noise, int n, double force, int rows, do
     int left, count = noise->sounds;
     n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &left, level);
     for (int k = 0; k < n; k++) {
-        uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);
+        uint64_t bits = himc_random_bits(&noise->state), same = himc_random_bits(&noise->common),
+                 other = himc_random_bits(&noise->common);
         for (int i = 0; i < count; i++) {
-            double own = white(bits, i);
+            double own = sqrt(COMMON) * white(same, i) + sqrt(1 - COMMON) * white(bits, i);
             x[k][i] =
                 (both){own, COHERENCE * own + sqrt(1 - COHERENCE * COHERENCE) * white(other, i)};
         }
