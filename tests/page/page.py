@@ -269,6 +269,22 @@ def test_a_message_is_answered_as_in_pure_data():
     assert len(told()) >= 1 and not any(wrong for _, wrong in told()), told()
 
 
+ANSWER = """
+const last = document.querySelector("#p-said div:last-child").getBoundingClientRect(), sheet = document.getElementById("perform").getBoundingClientRect();
+return last.height > 10 && last.top >= sheet.top && last.bottom <= sheet.bottom + 1 && last.bottom <= innerHeight;
+"""
+
+
+def test_an_answer_is_seen_on_each_size_of_screen():
+    open_page()
+    for size in ((360, 740), (740, 360), (1280, 800)):
+        browser.resize(*size)
+        say("tempo x")
+        told()
+        assert browser.wait(ANSWER), size
+    browser.resize(800, 600)
+
+
 def test_keys_and_presses_and_a_keyboard_are_hits():
     def hit(act):
         browser.run("heard.strikes.length = 0;" + act)

@@ -8,6 +8,7 @@ import { readFrame } from "./stream.js";
 const $ = id => document.getElementById(id);
 const RATE = 48000, // (Hz), on every device: the same bits everywhere
     SAID = 60, // lines that are kept; chosen
+    PREPARED = 700, // (ms) of loading that is not told; chosen
     LONGEST = 20000, // of a link (letters); chosen: what chats and mails keep whole
     LOWEST = 38, // the note at the left of the tuning, D2 ...
     JOURNAL = "himc-journal", // in the browser's storage: the scores whose text was changed, by name
@@ -223,6 +224,8 @@ export class Studio {
         $("p-drum").replaceChildren();
         this.on.fresh();
         this.write(this.draft === undefined ? this.bytes : bytesOf.encode(this.draft));
+        const tempo = /^\s*tempo\s+([0-9.]+)/m.exec($("p-text").value);
+        $("p-tempo").value = tempo ? tempo[1] : 100;
         this.draft = undefined;
         if (!this.pieces.includes(name) && $("p-text").value) this.typed();
         this.playing(!!play);
@@ -249,6 +252,7 @@ export class Studio {
         this.outside?.({ text, wrong });
         while (log.children.length > SAID) log.firstChild.remove();
         log.scrollTop = log.scrollHeight;
+        if (wrong) log.scrollIntoView({ block: "nearest" });
     }
 
     save(name, bytes) {
@@ -281,6 +285,7 @@ export class Studio {
         worker.onmessage = e => this.hear(e.data, from);
         worker.onerror = e => this.hear({ failed: e.message }, from);
         this.send(from);
+        setTimeout(() => from === this.coming && this.tell(`${name} is being prepared`), PREPARED);
     }
 
     send({ worker, name, bytes, then }) {
