@@ -385,7 +385,8 @@ static void against_neighbours(lesson_course *c)
         for (int i = k > 2 ? k - 2 : 0; i <= k + 2 && i < c->n; i++)
             if (i != k)
                 near[n++] = c->scratch[i];
-        x[k] = k && k + 1 < c->n ? c->scratch[k] - lesson_median(near, n) : 0;
+        bool waits = k && c->segment[k] > c->segment[k - 1]; // which is named
+        x[k] = k && k + 1 < c->n && !waits ? c->scratch[k] - lesson_median(near, n) : 0;
     }
 }
 
