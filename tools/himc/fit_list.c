@@ -75,6 +75,7 @@
 #define SKIRT 15          // ... so many bins a peak is that one's
 #define ONSET_DOWN 50.0   // (dB) below the loudest of the onset peaks do not count ...
 #define LATE_DOWN 65.0    // ... late
+#define PEAKS_ABOVE 90.0  // (Hz) above PARTIALS_LINES: no line is hidden by one
 #define ONSET 1           // the window in which a line ...
 #define ONSET_MORE 6.0    // ... has so much more (dB) than its slope says ...
 #define ONSET_STRONG 25.0 // (dB) ... and is no softer than the strongest by this ...
@@ -352,7 +353,7 @@ static bool add_peaks(const partials_sound *sound, int window, double down, list
     int first = l->count;
     s.window = window;
     s.grid = 1 / (fit_windows[window][1] - fit_windows[window][0]);
-    s.lowest = PARTIALS_LINES;
+    s.lowest = PARTIALS_LINES + PEAKS_ABOVE;
     s.bins = (int)fmin(BINS, (fmin(0.45 * sound->rate, FIT_LIST_HIGHEST) - s.lowest) / s.grid);
     s.least = -INFINITY;
     for (int k = 0; k < s.bins; k++)
