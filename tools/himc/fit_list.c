@@ -37,9 +37,9 @@
 #define HALVED 1.1       // f T at -6 dB
 #define LESS 10.0        // (dB) the contact may have less than a partial ...
 #define GAP 2.0          // ... and f T is below its first gap
-#define FALLEN 12.0      // (dB) most that a partial falls in the first window
+#define FALLEN 6.0       // (dB) most that a partial falls in the first window
 #define HEARD 150.0      // (Hz) below, partials are heard less
-#define MATTERS 40.0     // (dB) below the strongest a partial does not choose the mallet
+#define MATTERS 30.0     // (dB) below the strongest a partial does not choose the mallet
 #define SHORTEST 2e-4    // (s) of contacts ...
 #define LONGEST 1.6e-3   // ... a longer one has a gap below 1.4 kHz
 #define BOOST 24.0       // (dB) of pressure, more than the strongest's
