@@ -28,6 +28,7 @@
 #define UNLIKE 0.1        // (dB) two mallets differ by this ...
 #define UNLIKE_PART 0.15  // ... and per distance, or they are not told apart; chosen
 #define ALIKE 0.003       // per frequency: so near it is
+#define UNLIKE_DECAY 0.3  // (Hz) per ln of T60
 #define SURE 6.0          // (dB) clear of the others
 #define STEADY 0.2        // (Hz)
 #define CENTS 5.0         // a principal so far from the recorded one is told
@@ -56,8 +57,9 @@ typedef struct fit {
     bool timpano; // it is known which drum it is
     bool list;    // what is made is a list of modes
     char name[HIMC_NAME_SIZE];
-    char head[HIMC_PATH_SIZE], modes[HIMC_PATH_SIZE]; // files beside the drum's; one is written
-    cli_file file, second_file;                       // the drum's, and that one
+    double pitch;                                     // of the list (Hz)
+    char head[HIMC_PATH_SIZE], modes[HIMC_PATH_SIZE]; // files beside the drum's
+    cli_file file, head_file, modes_file;
 } fit;
 
 // the next letter of the path, small and without its mark; another character as it is
@@ -120,7 +122,7 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
         "tempo 60;\nstroke 1 right legato %s;\n",
         f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
         fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
-    return cli_draft(&f->second_file, f->head, put, head, error) &&
+    return cli_draft(&f->head_file, f->head, put, head, error) &&
            cli_draft(&f->file, path, put, text, error);
 }
 
@@ -128,12 +130,14 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
 static bool write_list(fit *f, const char *path, himc_error *error)
 {
     char text[3 * HIMC_PATH_SIZE];
-    himc_state_line line = himc_state_begin("instrument");
+    himc_state_line line = himc_state_begin("instrument"), shape = himc_state_begin("shape");
     double radius = f->timpano ? RADIUS_PER_INCH * f->drum.inches : FIT_LIST_RADIUS;
-    if (!fit_list(&f->sound, &f->found, radius, f->modes, &f->second_file, &f->made, error))
+    f->pitch = f->timpano ? f->drum.tune : 0;
+    if (!fit_list(&f->sound, &f->found, radius, &f->pitch, f->modes, &f->modes_file, &f->made,
+                  error))
         return false;
     // it is not there yet: its draft is, whose name goes on
-    const cli_file *file = &f->second_file;
+    const cli_file *file = &f->modes_file;
     char *whole = himc_system_real_path(file->temp);
     size_t length = whole ? strlen(whole) + strlen(file->path) - strlen(file->temp) : 0;
     if (!whole || length >= HIMC_PATH_SIZE || strpbrk(whole, "\n\r\v\f")) {
@@ -145,11 +149,17 @@ static bool write_list(fit *f, const char *path, himc_error *error)
     himc_state_word(&line, f->name);
     himc_state_word(&line, "modes");
     himc_state_word(&line, whole);
+    himc_state_word(&shape, "modes");
+    himc_state_word(&shape, whole);
     free(whole);
+    // without a room: the list has the recording's
     snprintf(text, sizeof text,
-             "comment made by himc fit;\n%s;\n%stempo 60;\nstroke 1 right legato mf;\n", line.text,
-             f->found.room > 0 ? "room 0;\n" : ""); // it has the recording's
-    return cli_draft(&f->file, path, put, text, error);
+             "comment made by himc fit;\n%s;\nroom 0;\ntempo 60;\nstroke 1 right legato mf;\n",
+             line.text);
+    if (!cli_draft(&f->file, path, put, text, error))
+        return false;
+    snprintf(text, sizeof text, "%s;\n", shape.text);
+    return cli_draft(&f->head_file, f->head, put, text, error);
 }
 
 static bool hear_drum(fit *f, himc_error *error)
@@ -248,8 +258,9 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
         return himc_error_set(error, "--instrument: %s, expected timpano or modes", kind);
     if (!cli_ending_is("-o", out, ".txt", error) ||
         !cli_apart(out, a->repeated, a->repeats, error) || !beside(a, "head", f->head, error) ||
-        !beside(a, "modes", f->modes, error))
+        !beside(a, "modes", f->modes, error) || !cli_draft(&f->file, out, put, "", error))
         return false;
+    cli_file_drop(&f->file); // it can be written
     for (int i = 0; i < a->repeats; i++)
         if (!partials_read(&f->sound, a->repeated[i], error))
             return false;
@@ -262,7 +273,8 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     if (f->list)
         partials_lines(&f->sound, &f->found);
     if (!(f->list ? write_list(f, out, error) : write_drum(f, out, error) && hear_drum(f, error)) ||
-        !cli_file_keep(&f->second_file, error) || !cli_file_keep(&f->file, error))
+        (f->list && !cli_file_keep(&f->modes_file, error)) ||
+        !cli_file_keep(&f->head_file, error) || !cli_file_keep(&f->file, error))
         return false;
     if (f->list && !kind)
         cli_say(f->timpano ? "note: no membrane sounds so: a list of modes (--instrument timpano "
@@ -282,10 +294,12 @@ static bool decided(const fit_drum *d)
 static const partial *nearest(const fit *f, const partial *p)
 {
     const partial *best = NULL;
-    double most = NEAR * p->frequency;
+    double most = (f->list ? ALIKE : NEAR) * p->frequency;
     for (int i = 0; i < f->made.count; i++) {
         double apart =
             fabs(f->made.row[i].frequency - p->frequency) + 0.02 * f->made.row[i].frequency_error;
+        if (f->list) // one line may be made of two modes
+            apart += UNLIKE_DECAY * fabs(log(f->made.row[i].t60 / p->t60));
         if (apart < most && f->made.row[i].clear > 0) {
             most = apart;
             best = &f->made.row[i];
@@ -294,20 +308,34 @@ static const partial *nearest(const fit *f, const partial *p)
     return best;
 }
 
-// of a drum the partials that it has, of a list the clear ones
+// of a drum the partials that it has, of a list the strongest of the clear ones
 static int rows(const fit *f, int out[ROWS])
 {
+    double strongest = -INFINITY;
     int count = 0;
-    for (int i = 0; i < f->found.count && count < ROWS; i++) {
+    for (int i = 0; i < f->found.count; i++)
+        strongest = fmax(strongest, f->found.row[i].energy);
+    for (int i = 0; i < f->found.count; i++) {
         const partial *p = &f->found.row[i], *q = nearest(f, p);
         bool member = false;
         for (int k = 0; k < 2 * FIT_ORDERS; k++)
             member = member || (!f->list && f->drum.of[k] == i);
         bool doubtful = f->list && !p->line && p->frequency < PARTIALS_LINES;
         bool alike = q && fabs(q->frequency / p->frequency - 1) < ALIKE;
-        if (member ||
-            (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list) && !doubtful))
+        member =
+            member || (f->list && alike && p->energy > strongest - FIT_LIST_STRONG) ||
+            (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list) && !doubtful);
+        if (member && count < ROWS)
             out[count++] = i;
+        else if (member) { // the softest makes room
+            int least = 0;
+            for (int k = 1; k < ROWS; k++)
+                least = f->found.row[out[k]].energy < f->found.row[out[least]].energy ? k : least;
+            if (p->energy <= f->found.row[out[least]].energy)
+                continue;
+            memmove(&out[least], &out[least + 1], sizeof *out * (size_t)(ROWS - 1 - least));
+            out[ROWS - 1] = i;
+        }
     }
     return count;
 }
@@ -351,8 +379,10 @@ static void report(const fit *f, bool json)
     qsort(louder, (size_t)pairs, sizeof *louder, himc_order_doubles);
     printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n",
            f->timpano ? "timpano" : "modes");
-    if (f->timpano)
+    if (f->timpano && (json || !f->list))
         report_drum(f, json);
+    if (f->list)
+        printf(json ? "\"pitch_hz\": %.3f, " : "pitch       %.2f Hz\n", f->pitch);
     printf(json ? "\"made\": \"%s\", " : "made        as %s\n",
            f->list ? json ? "modes" : "a list of modes"
            : json  ? "membrane"
@@ -389,7 +419,8 @@ static int run(const cli_arguments *arguments)
     if (good)
         report(&f, arguments->value[JSON]);
     cli_file_drop(&f.file);
-    cli_file_drop(&f.second_file);
+    cli_file_drop(&f.head_file);
+    cli_file_drop(&f.modes_file);
     partials_sound_free(&f.sound);
     partials_sound_free(&f.again);
     return good ? cli_finish(&cli_fit) : cli_fail(&cli_fit, "%s", error.text);

@@ -36,7 +36,7 @@ bool fit_spectrum_of(const partials_sound *sound, fit_spectrum *out, himc_error 
     for (int k = 0; k < FIT_LINES; k++)
         frequency[k] = FIT_LOWEST * exp(FIT_FINE * k);
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
-        if (!partials_levels(sound, spans[s].from, spans[s].to, frequency, FIT_LINES, raw))
+        if (!partials_levels(sound->low, spans[s].from, spans[s].to, frequency, FIT_LINES, raw))
             return himc_error_set(error, "out of memory");
         for (int k = 0; k < FIT_LINES; k++) {
             int low = k < AROUND ? 0 : k - AROUND, n = 0;

@@ -52,8 +52,9 @@ void partials_sound_free(partials_sound *sound);
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
 
-/// Level (dB) at `count` frequencies up to PARTIALS_LOW (Hz) from `from` to `to` (s), of all
-/// channels together. False without memory.
+/// Level (dB) at `count` frequencies (Hz) from `from` to `to` (s), of all channels together, in
+/// Hann's window, from the onset on in its second half; of `sound->low` up to PARTIALS_LOW, sooner.
+/// False without memory.
 bool partials_levels(const partials_sound *sound, double from, double to, const double *frequency,
                      int count, double *level);
 

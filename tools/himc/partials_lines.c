@@ -46,19 +46,20 @@ static size_t shortest(const partials_sound *sound)
 bool partials_levels(const partials_sound *sound, double from, double to, const double *frequency,
                      int count, double *level)
 {
-    const partials_sound *low = sound->low;
-    size_t start = (size_t)(from * low->rate), n = (size_t)(fmax(to - from, 0) * low->rate);
+    size_t start = (size_t)(from * sound->rate), n = (size_t)(fmax(to - from, 0) * sound->rate);
     double *x = malloc((n + 1) * sizeof *x);
     memset(level, 0, (size_t)count * sizeof *level);
-    for (int t = 0; x && t < low->tracks; t++) {
+    for (int t = 0; x && t < sound->tracks; t++) {
         for (size_t i = 0; i < n; i++)
-            x[i] = start + i < low->length[t]
-                       ? low->track[t][start + i] * (1 - cos(2 * HIMC_PI * (double)i / (double)n))
+            x[i] = start + i < sound->length[t]
+                       ? sound->track[t][start + i] *
+                             (start > 0 ? 1 - cos(2 * HIMC_PI * (double)i / (double)n)
+                                        : 1 + cos(HIMC_PI * (double)i / (double)n))
                        : 0;
         for (int first = 0; first < count; first += LANES) { // Goertzel 1958, together for speed
             double turn[LANES] = {0}, one[LANES] = {0}, two[LANES] = {0};
             for (int k = 0; k < LANES && first + k < count; k++)
-                turn[k] = 2 * cos(2 * HIMC_PI * frequency[first + k] / low->rate);
+                turn[k] = 2 * cos(2 * HIMC_PI * frequency[first + k] / sound->rate);
             for (size_t i = 0; i < n; i++)
                 for (int k = 0; k < LANES; k++) {
                     double now = x[i] + turn[k] * one[k] - two[k];
@@ -86,7 +87,8 @@ static bool find_spectrum(const partials_sound *sound, double level[BINS])
     double end = end_of(sound), frequency[BINS];
     for (int k = 0; k < BINS; k++)
         frequency[k] = LOWEST + STEP * k;
-    return end - FROM > LEAST_LONG && partials_levels(sound, FROM, end, frequency, BINS, level);
+    return end - FROM > LEAST_LONG &&
+           partials_levels(sound->low, FROM, end, frequency, BINS, level);
 }
 
 // level (dB) in that spectrum of a partial whose level at the onset is 0
