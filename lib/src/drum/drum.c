@@ -475,8 +475,7 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
             store_singles(drum, made); // an onset has the drum's time
             if (drum->set.mallet[HIMC_LEFT].noise != drum->set.mallet[HIMC_RIGHT].noise)
                 himc_drum_find_noise(drum, &all[k]->head);
-            himc_stroke_noise_begin(&drum->noise, drum->set.head.head.uniformity_seed, all[k]->x,
-                                    all[k]->y);
+            himc_stroke_noise_begin(&drum->noise, all[k]->x, all[k]->y);
             himc_drum_keep_onset(drum, all[k]);
             himc_drum_launch_shaft(drum, all[k]);
         }

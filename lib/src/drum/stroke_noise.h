@@ -44,9 +44,9 @@ HIMC_RT void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate);
 /// What lies on the head ends its noise as it ends its modes: a hand of that `damp` (0 .. 1,
 /// himc/membrane.h), or a cloth as heavy.
 HIMC_RT void himc_stroke_noise_damp(himc_stroke_noise *noise, double damp);
-/// A contact begins at that place (m) of a drum, any number: its noise begins, the same for every
-/// blow within two centimetres, and alike for all of that drum.
-HIMC_RT void himc_stroke_noise_begin(himc_stroke_noise *noise, int drum, double x, double y);
+/// A contact begins at that place (m): its noise begins, the same for every blow within two
+/// centimetres, and alike for all.
+HIMC_RT void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y);
 /// The next n samples at 1 m, for `rows` (1, 2) places far apart, while `force` (N) acts in each.
 HIMC_RT void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force, int rows,
                                    double *const row[HIMC_NOISE_ROWS]);
