@@ -389,6 +389,10 @@ def test_bad_recordings_are_refused():
     refused("silence.wav", [0.0] * RATE, "silence")
     refused("clipped.wav", [max(-0.2, min(0.2, x)) for x in stroke], "clipped")
     refused("two.wav", [x + y for x, y in zip(stroke, rings(BAR, 2.0, 1.0))], "a second stroke 0.8")
+    roll = "".join(f"stroke {1 + 0.15 * k:g} {('left', 'right')[k % 2]} legato mf;\n" for k in range(2))
+    good("render", write_text("two.txt", "tempo 60;\n" + roll), "-o", path("double.wav"))
+    done = himc("fit", path("double.wav"), "-o", path("none.txt"))
+    assert done.returncode == 1 and "double.wav: a second stroke 0.1" in done.stderr, done.stderr
     refused("short.wav", stroke[: RATE // 2], "0.30 s from the stroke on")
     refused("noisy.wav", [x + rng.gauss(0, 0.03) for x in stroke], "noise at")
     refused("noise.wav", [rng.gauss(0, 0.1) for _ in stroke], "as loud at its end")

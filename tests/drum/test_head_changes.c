@@ -117,7 +117,10 @@ static void test_a_change_sounds_as_the_command_given_then(void)
     read_all(p, given, AT, LENGTH);
     himc_performance_free(p);
     TEST_ASSERT_EQUAL_MEMORY(given, written, sizeof given);
-    TEST_ASSERT_TRUE(fabs(given[AT + 1000]) > 1e-4); // it rang
+    double most = 0;
+    for (int i = AT + 1000; i < AT + 2000; i++)
+        most = fmax(most, fabs(given[i]));
+    TEST_ASSERT_TRUE(most > 1e-3); // it rang
 }
 
 static void test_changes_need_no_memory_and_follow_the_transport(void)

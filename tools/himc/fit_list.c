@@ -125,7 +125,7 @@ static bool hear(const cli_file *file, double rate, partials_sound *out, double 
     else if (!heard)
         himc_error_set(error, "out of memory");
     *loudness = good ? fit_loudness(heard, frames, rate) : 0;
-    good = good && partials_add(out, heard, frames, 2, rate, "the instrument made", error);
+    good = good && partials_add(out, heard, frames, 2, rate, "the instrument made", false, error);
     himc_performance_free(p);
     free(heard);
     return good;

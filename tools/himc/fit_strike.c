@@ -70,7 +70,7 @@ bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_
                 heard[2 * (at + i) + (size_t)c] = (float)row[i];
         }
     }
-    good = good && partials_add(out, heard, frames, 2, rate, "the drum made", error);
+    good = good && partials_add(out, heard, frames, 2, rate, "the drum made", false, error);
     free(heard);
     return good;
 }
@@ -108,7 +108,7 @@ static bool blow(const fit_drum *d, int mallet, int dynamic, double rate, spectr
     bool good = heard || himc_error_set(error, "out of memory");
     if (p)
         himc_performance_read(p, heard, 2, (int)(PLAYED * rate));
-    good = good && p && partials_add(&sound, heard, frames, 2, rate, "the drum made", error);
+    good = good && p && partials_add(&sound, heard, frames, 2, rate, "the drum made", false, error);
     *out = (spectrum){{0}};
     for (int i = 0; i < sound.tracks; i++)
         add_spectrum(sound.track[i], (size_t)(LENGTH * rate), rate, out);

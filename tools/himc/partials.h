@@ -43,9 +43,10 @@ typedef struct partials_list {
 /// Adds the stroke of a sound file. False with the reason: no sound file, silence, clipped, too
 /// short, too noisy, two strokes, another sample rate.
 bool partials_read(partials_sound *sound, const char *path, himc_error *error);
-/// Adds the channels of a stroke, taken over by copy: `samples` of each, `channels` in turn.
+/// Adds the channels of a stroke, taken over by copy: `samples` of each, `channels` in turn. What
+/// is not `recorded` may end at once.
 bool partials_add(partials_sound *sound, const float *samples, size_t frames, int channels,
-                  double rate, const char *name, himc_error *error);
+                  double rate, const char *name, bool recorded, himc_error *error);
 void partials_sound_free(partials_sound *sound);
 
 /// All partials up to `highest` (Hz). False with the reason, without memory.
