@@ -269,22 +269,6 @@ def test_a_message_is_answered_as_in_pure_data():
     assert len(told()) >= 1 and not any(wrong for _, wrong in told()), told()
 
 
-ANSWER = """
-const last = document.querySelector("#p-said div:last-child").getBoundingClientRect(), sheet = document.getElementById("perform").getBoundingClientRect();
-return last.height > 10 && last.top >= sheet.top && last.bottom <= sheet.bottom + 1 && last.bottom <= innerHeight;
-"""
-
-
-def test_an_answer_is_seen_on_each_size_of_screen():
-    open_page()
-    for size in ((360, 740), (740, 360), (1280, 800)):
-        browser.resize(*size)
-        say("tempo x")
-        told()
-        assert browser.wait(ANSWER), size
-    browser.resize(800, 600)
-
-
 def test_keys_and_presses_and_a_keyboard_are_hits():
     def hit(act):
         browser.run("heard.strikes.length = 0;" + act)
@@ -544,6 +528,24 @@ def test_each_size_of_screen_shows_the_whole_inspector_of_a_stroke():
     finally:
         browser.resize(800, 600)
         tidy()
+
+
+ANSWER = """
+const last = document.querySelector("#p-said div:last-child").getBoundingClientRect(), sheet = document.getElementById("perform").getBoundingClientRect();
+return last.height > 10 && last.top >= sheet.top && last.bottom <= sheet.bottom + 1 && last.bottom <= innerHeight;
+"""
+
+
+def test_an_answer_is_seen_on_each_size_of_screen():
+    open_page()
+    assert browser.wait("return viewer.studio.ready")
+    for size in ((360, 740), (740, 360), (1280, 800)):
+        browser.resize(*size)
+        say("tempo x")
+        refused()
+        assert browser.wait(ANSWER), (size, browser.run("return document.getElementById('p-said').textContent"))
+    browser.resize(800, 600)
+    tidy()
 
 
 # serious and critical faults by axe-core's rules

@@ -353,7 +353,8 @@ function frame(_, now = clock(), draw = true) {
     if (now - written > 250) {
         written = now;
         panel.write([...performers.values()], numbers, now, playback);
-        panel.silent(playback ? !!playback.sound.buffer : studio ? sound.context?.state !== "running" : now - liveSound.heard < 1000, playback?.sound ?? sound);
+        const any = playback ? !!playback.sound.buffer : studio ? sound.context?.state !== "running" : now - liveSound.heard < 1000;
+        panel.silent(any && !(playback?.sound ?? sound).ready, sound);
         studio?.drums(shownDrums());
         panel.filming(recorder.filming);
     }

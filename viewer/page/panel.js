@@ -283,10 +283,10 @@ export class Panel {
         $("status").textContent = [...this.status.values()].slice(-2).join("\n");
     }
 
-    // whether there is a sound, which needs a click to be heard
-    silent(any, sound) {
+    // whether there is a sound that needs a click to be heard
+    silent(waits, sound) {
         $("mute").setAttribute("aria-pressed", sound.volume > 0);
-        document.body.classList.toggle("silent", any && !sound.ready);
+        document.body.classList.toggle("silent", waits);
     }
 
     transport(p) {

@@ -252,7 +252,7 @@ export class Studio {
         this.outside?.({ text, wrong });
         while (log.children.length > SAID) log.firstChild.remove();
         log.scrollTop = log.scrollHeight;
-        if (wrong) log.scrollIntoView({ block: "nearest" });
+        if (wrong) $("perform").scrollTop = $("perform").scrollHeight; // where the answers are
     }
 
     save(name, bytes) {
