@@ -172,7 +172,7 @@ static double product(const double *x, const double *y)
     return sum;
 }
 
-static void test_noise_is_half_alike_at_two_places_and_goes_with_its_amount(void)
+static void test_noise_is_alike_at_two_places_and_goes_with_its_amount(void)
 {
     static double left[LENGTH], right[LENGTH], half[2][LENGTH];
     blow(1, 0.005, left, right);
@@ -289,7 +289,7 @@ int main(void)
     RUN_TEST(test_hard_mallets_and_fast_blows_have_more_noise_for_their_force);
     RUN_TEST(test_equal_blows_are_equal_and_others_alike);
     RUN_TEST(test_noise_is_the_same_in_all_blocks);
-    RUN_TEST(test_noise_is_half_alike_at_two_places_and_goes_with_its_amount);
+    RUN_TEST(test_noise_is_alike_at_two_places_and_goes_with_its_amount);
     RUN_TEST(test_noise_rests_as_soon_as_nobody_hears_it_and_without_a_step);
     RUN_TEST(test_a_slow_press_makes_hardly_any_noise);
     RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);

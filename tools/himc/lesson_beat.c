@@ -19,6 +19,8 @@ const char lesson_time_source[] =
     "listeners notice 6 ms, or 2.5 % of intervals above 240 ms: Friberg and Sundberg 1995";
 const char lesson_none_source[] =
     "a stroke too few or too many is always heard; no threshold is published";
+const char lesson_uneven_source[] =
+    "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
 #define JND_TEMPO 2.0 // (%)
 static const char tempo_source[] =
     "listeners notice a drift of about 2 %, several studies cited by Dahl and Madison 2005";

@@ -18,7 +18,9 @@ typedef struct lesson_course {
     double knee;       // at this asked time (s), NaN: none, by bend (s/s)
 } lesson_course;
 
-extern const char lesson_time_source[], lesson_none_source[];
+#define LESSON_UNEVEN_LEVEL 2.0 ///< of strokes that should be equally loud (dB)
+
+extern const char lesson_time_source[], lesson_none_source[], lesson_uneven_source[];
 
 /// The smallest shift of a stroke that listeners notice (s) in intervals of that length (s).
 double lesson_jnd(double interval);

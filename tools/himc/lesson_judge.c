@@ -32,9 +32,6 @@ static const char place_source[] =
 #define UNEVEN_SHARE 0.04 // of the interval
 static const char even_source[] =
     "chosen: 4 % of the interval, 20 ms or more; trained tappers vary by about 2 %: Repp 2005";
-#define UNEVEN_LEVEL 2.0 // (dB)
-static const char even_level_source[] =
-    "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
 
 #define FLAT 0.5   // share of a crescendo that must be missing
 #define SWELL 3.0  // (dB) of a crescendo or more; chosen
@@ -362,7 +359,7 @@ static void judge_even(lesson *l, lesson_course *c, const quantity *q)
     double camera = time ? 0.5 / l->rate : l->played[0].u_level;
     // the local beat follows the strokes a little
     double sd = q->scale * sqrt(fmax(0, sum - camera * camera) * c->n / (c->n - LESSON_FEWEST));
-    double most = time ? 1e3 * fmax(UNEVEN, UNEVEN_SHARE * c->interval) : UNEVEN_LEVEL;
+    double most = time ? 1e3 * fmax(UNEVEN, UNEVEN_SHARE * c->interval) : LESSON_UNEVEN_LEVEL;
     lesson_fault *f = lesson_fault_add(
         l, "even", sd, lesson_below(sd, c->n - LESSON_FEWEST) / LESSON_SURE, LESSON_SURE, most);
     if (!f)
@@ -370,7 +367,7 @@ static void judge_even(lesson *l, lesson_course *c, const quantity *q)
     snprintf(f->what, sizeof f->what, "Your strokes are uneven in %s: %.1f %s about your own %s",
              time ? "time" : "loudness", sd, q->unit, time ? "beat" : "mean");
     snprintf(f->how, sizeof f->how, "standard deviation of %d strokes", c->n);
-    lesson_fault_explain(f, sd, q->unit, time ? even_source : even_level_source);
+    lesson_fault_explain(f, sd, q->unit, time ? even_source : lesson_uneven_source);
 }
 
 // a displaced stroke is heard against its neighbours, the middle of four; the first and the last

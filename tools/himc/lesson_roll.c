@@ -3,10 +3,7 @@
 
 #include <math.h>
 
-#define LENGTH 0.15      // (s) of a roll
-#define UNEVEN_LEVEL 2.0 // (dB) between the hands of a roll
-static const char level_source[] =
-    "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
+#define LENGTH 0.15 // (s) of a roll
 static const char length_source[] =
     "chosen: two of its strokes, 150 ms or more; no listeners' threshold is published";
 
@@ -121,7 +118,7 @@ static void judge_sides(lesson *l, const lesson_roll *r, const double *level, co
            u = alone ? 0 : spread * sqrt(1.0 / count[0] + 1.0 / count[1]);
     double apart = mean[HIMC_RIGHT] - mean[HIMC_LEFT];
     lesson_fault *f = lesson_fault_add(l, "roll", alone ? 1 : fabs(apart), u, LESSON_SURE,
-                                       alone ? 0.01 : UNEVEN_LEVEL);
+                                       alone ? 0.01 : LESSON_UNEVEN_LEVEL);
     if (!f)
         return;
     const char *who = himc_hand_name((alone ? count[1] > 0 : apart < 0) ? HIMC_RIGHT : HIMC_LEFT);
@@ -133,8 +130,9 @@ static void judge_sides(lesson *l, const lesson_roll *r, const double *level, co
                  r->beat, who, fabs(apart));
     snprintf(f->how, sizeof f->how, "%d strokes", n);
     lesson_fault_explain(f, alone ? 0 : spread, alone ? "roll" : "dB",
-                         alone ? "a roll of one stroke each needs both hands" : level_source);
-    f->threshold = alone ? 1 : UNEVEN_LEVEL;
+                         alone ? "a roll of one stroke each needs both hands"
+                               : lesson_uneven_source);
+    f->threshold = alone ? 1 : LESSON_UNEVEN_LEVEL;
 }
 
 void lesson_judge_rolls(lesson *l, const lesson_course *c)

@@ -53,8 +53,8 @@ static bool word(bvh *r, const char *where, himc_span *w)
 {
     while (!himc_span_word(&r->line, w))
         if (!himc_text_line(&r->text, &r->line))
-            return himc_error_set(r->error, "%s:%d: the file ends, expected more: %s",
-                                  r->take->file, r->text.line, where);
+            return himc_error_set(r->error, "%s:%d: the file ends too early: %s", r->take->file,
+                                  r->text.line, where);
     return true;
 }
 
