@@ -308,11 +308,11 @@ def test_three_soft_accents_are_one_fault():
 PLACES = {"low": (0.70, 0.0), "high": (0.33, -0.62)}  # of two drums, where a score has them by itself
 
 
-def two_drums(change=lambda k, stroke: stroke, places=PLACES, turn=0, score="", takes=32, gap=None):
-    """Faults and figures of a clean take on two drums, quavers at 100, whose strokes (time, hand, drum, speed, x, y on the head) are changed."""
+def two_drums(change=lambda k, stroke: stroke, places=PLACES, turn=0, takes=32, gap=None, first=0, accents=False):
+    """Faults and figures of a clean take on two drums, quavers at 100, whose strokes (time, hand, drum, speed, x, y on the head) are changed; `first`: the hand that begins."""
     draw, strikes = lesson_takes.random.Random("two drums"), {hand: [] for hand in HANDS}
-    strokes = [(HANDS[k % 2], ("low", "high")[k // 4 % 2]) for k in range(32)]
-    text = "tempo 100;\ndrum low 29;\ndrum high 26;\n" + score + "".join(f"stroke {1 + k / 2:g} {hand} legato mf normal {drum};\n" for k, (hand, drum) in enumerate(strokes))
+    strokes = [(HANDS[(k + first) % 2], ("low", "high")[k // 4 % 2]) for k in range(32)]
+    text = "tempo 100;\ndrum low 29;\ndrum high 26;\n" + "".join(f"stroke {1 + k / 2:g} {hand} {'accent f' if accents and k % 8 == 0 else 'legato mf'} normal {drum};\n" for k, (hand, drum) in enumerate(strokes))
     for k, (hand, drum) in enumerate(strokes[:takes]):
         stroke = [1 + 0.3 * k + draw.gauss(0, 0.004), hand, drum, 2.9 * 10 ** (draw.gauss(0, 0.5) / 20), -0.26 + draw.gauss(0, 0.006), (0.015 if hand == "left" else -0.015) + draw.gauss(0, 0.006)]
         stroke = change(k, stroke)
@@ -367,6 +367,30 @@ def test_loudness_that_drifts_and_a_tempo_that_changes_once_are_named():
     assert what[0].startswith("You rush from beat 9") and abs(told["faults"][0]["effect"] - 25) < 1 and len(what) == 1, what
 
 
+def test_accents_left_out_are_no_flat_diminuendo():
+    what, _ = two_drums(accents=True)
+    assert len(what) == 1 and re.match("The strokes marked accent are [0-9.]+ dB too soft", what[0]), what
+
+
+def test_a_wait_is_named_once_even_if_its_stroke_is_hurried():
+    what, _ = two_drums(lambda k, s: [s[0] + 0.3 * (k >= 16) - 0.08 * (k == 16)] + s[1:])
+    assert len(what) == 1 and what[0].startswith("You wait before beat 9"), what
+
+
+def test_the_hands_of_a_roll_are_compared():
+    text = "tempo 100;\nroll 9 3 single mf;\n" + "".join(f"stroke {b} {HANDS[b % 2]} legato mf;\n" for b in (*range(1, 9), *range(12, 18)))
+    for left, named in ((1, None), (0.55, "The roll at beat 9: the left hand is"), (0, "The roll at beat 9 is played by the right hand alone")):
+        draw, strikes = lesson_takes.random.Random("roll"), {hand: [] for hand in HANDS}
+        strokes = [(b, HANDS[b % 2], 2.9) for b in (*range(1, 9), *range(12, 18))]
+        strokes += [(9 + k / 6, hand, 2.3 * (left if hand == "left" else 1)) for k in range(17) for hand in ("right" if left == 0 else HANDS[k % 2],)]
+        for beat, hand, speed in strokes:
+            strikes[hand].append((0.6 * beat + draw.gauss(0, 0.003), speed * 10 ** (draw.gauss(0, 0.4) / 20), lesson_takes.BASE["normal"] + draw.gauss(0, 0.006), 0.015 if hand == "left" else -0.015))
+        lesson_takes.write(path("roll.csv"), {hand: sorted(list_) for hand, list_ in strikes.items()}, 250, draw)
+        status, out, err = lesson(path("hands.txt", text), path("roll.csv"), "--json", "--up", "z")
+        what = [f["what"] for f in json.loads(out)["faults"]]
+        assert len(what) == (named is not None) and what[:1] == [w for w in what if w.startswith(named or "-")], (left, what, err)
+
+
 def test_a_stroke_in_a_gap_of_the_take_is_not_missing():
     what, told = two_drums(gap=(5.19, 5.21))
     assert told["unseen"] + told["matched"] == 32 and not told["missing"] and not what, told
@@ -378,6 +402,9 @@ def test_a_stroke_in_a_gap_of_the_take_is_not_missing():
 
 def test_the_hand_is_the_scores_even_where_the_model_takes_the_other():
     crossed = "stroke 17 right legato mf normal low;\nstroke 17.5 left legato mf normal high;\n"
+    what, told = two_drums(first=1)  # the model's left hand plays where the right would have to cross
+    text = subprocess.run([HIMC, "render", path("two.txt"), "-o", path("own.wav"), "--rate", "8000"], capture_output=True, text=True).stderr
+    assert "hand plays it" in text and not what and told["matched"] == 32, (text, what)
     text = "tempo 100;\ndrum low 29;\ndrum high 26;\nstroke 1 left legato mf normal low;\nstroke 2 right legato mf normal high;\n"
     flam = "".join(f"{('flam', 'stroke')[k % 2]} {3 + k} {HANDS[k % 2]} legato mf normal low;\n" for k in range(8))
     with open(path("hands.txt", text + flam + crossed)) as file:
@@ -395,6 +422,7 @@ def test_a_third_of_a_score_is_judged_and_another_piece_refused():
     two_drums()
     begin = "drum low 29;\ndrum high 26;\n" + "".join(f"stroke {1 + k / 2:g} {HANDS[k % 2]} legato mf normal {('low', 'high')[k // 4 % 2]};\n" for k in range(12))
     refused("12 of 32 strokes of the take found in the score", path("slow.txt", "tempo 60;\n" + begin), path("two.csv"), "--up", "z")
+    refused("ms off any steady beat, expected less than 100", "patches/pieces/zarathustra.mid", path("two.csv"), "--up", "z")
     assert lesson(path("begin.txt", "tempo 100;\n" + begin), path("two.csv"), "--up", "z")[0] == 0  # who goes on after the piece has played it
 
 
