@@ -9,9 +9,8 @@ const double fit_windows[FIT_WINDOWS][2] = {
 #define END_FROM 0.6 // (s) before the end ...
 #define END_TO 0.1   // ... of a recording
 #define LONG 2.4     // (s) with less there is no end but ringing
-#define MOMENT 0.4   // (s) of momentary loudness ...
-#define HOP 0.05     // ... in such steps
-#define HOPS 8       // in it
+#define HOP 0.05     // (s) between two momentary loudnesses, each of ...
+#define HOPS 8       // ... so many: 0.4 s
 
 bool fit_levels(const partials_sound *sound, const double *frequency, int count,
                 double (*level)[FIT_WINDOWS + 1])

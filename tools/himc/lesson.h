@@ -58,7 +58,6 @@ typedef struct lesson_roll {
     double beat;             ///< of its first stroke
     bool written;            ///< a `roll`: its number of strokes is free
     int strokes;             ///< played
-    double begin;            ///< of the first (s)
     double rate;             ///< (strokes a second)
     double uneven, u;        ///< standard deviation about even strokes, its uncertainty (s)
     double gallop, u_gallop; ///< every second stroke late by this (s)

@@ -37,7 +37,7 @@ static void judge_length(lesson *l, const lesson_roll *r, double due, double las
 static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double *level, int n)
 {
     double index[512], value[512], p[3], u[3], even[2] = {0}, ss = 0, louder = 0, mean = 0;
-    r->strokes = n, r->begin = n ? t[0] : NAN;
+    r->strokes = n;
     if (n < 2 * LESSON_FEWEST)
         return;
     for (int k = 1; k < n; k++)
