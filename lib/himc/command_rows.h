@@ -319,8 +319,9 @@ HIMC_COMMAND_ROW(
     "HAND K ALPHA MASS",
     "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both; usual: the "
     "instrument's")
-HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
-                 "sets how loud felt, shaft, shell and stand answer a blow")
+HIMC_COMMAND_ROW(
+    NOISE, noise, DRUM, NOW, 0, "AMOUNT [SEED]",
+    "sets how loud felt, shaft, shell and stand answer a blow, each seed as another drum's do")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
                  "sets where the head stands and how it is tilted")
 HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, HIMC_CHANGES_HEAD,

@@ -24,7 +24,7 @@
 #define UNKNOWN (-170.0)       // (dB) digital silence before the stroke, or nothing
 #define LEAST_SCORE 10.0       // of a drum (dB) ...
 #define MOST_APART 5.5         // ... and of its blow's spectrum (dB); chosen: bars have 8 and more
-#define LAWFUL 1.5        // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
+#define LAWFUL 2.0        // ... as a membrane's; chosen: ours have 1.5 and less, recorded 2.9 up
 #define UNLIKE 0.1        // (dB) two mallets differ by this ...
 #define UNLIKE_PART 0.15  // ... and per distance, or they are not told apart; chosen
 #define ALIKE 0.003       // per frequency: so near it is

@@ -376,7 +376,10 @@ bool himc_drum_settings_command(himc_drum_settings *s, const himc_command *comma
     switch (c->id) {
     case HIMC_COMMAND_SHAPE: return change_shape(s, c, error);
     case HIMC_COMMAND_MALLET: change_mallets(s, c); return true;
-    case HIMC_COMMAND_NOISE: s->noise = number(c, 0); return true;
+    case HIMC_COMMAND_NOISE:
+        s->noise = number(c, 0);
+        s->noise_seed = c->count == 2 ? (int)number(c, 1) : s->noise_seed;
+        return true;
     case HIMC_COMMAND_PLACE:
         s->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
         s->place.tilt = c->count == 4 ? number(c, 3) : s->place.tilt;
@@ -564,7 +567,8 @@ void himc_drum_tell_state(const himc_drum *drum, bool placed, const himc_line_si
     dump_pickups(himc_membrane_config_of(drum->membrane), to);
     himc_state_tell(to, "listener", set->picked ? "off" : "usual", 0, NULL);
     dump_mallets(set, to);
-    tell(to, "noise", set->noise);
+    himc_state_tell(to, "noise", NULL, set->noise_seed > 0 ? 2 : 1,
+                    (double[]){set->noise, set->noise_seed});
     if (placed)
         himc_state_tell(to, "place", NULL, 4, (double[]){at->x, at->y, at->z, set->place.tilt});
     tell(to, "gain", 20 * log10(set->gain));

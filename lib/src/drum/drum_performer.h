@@ -103,6 +103,7 @@ typedef struct himc_drum_settings {
     himc_mallet_head mallet[HIMC_HANDS];
     himc_word mallet_name[HIMC_HANDS]; ///< "medium", or "own" when given by numbers
     double noise;                      ///< its amount
+    int noise_seed;                    ///< whose shell and stand answer
     double gain;                       ///< of its sound (factor)
     bool mute;
     bool picked; ///< its pickups have been asked for: a usual listener leaves it to them

@@ -129,6 +129,7 @@ static inline void himc_drum_find_noise(himc_drum *drum, const himc_mallet_head 
     double bare = 1 - HIMC_MUFFLED_NOISE * himc_membrane_head(drum->membrane)->muffle;
     bool other = himc_membrane_config_of(drum->membrane)->shape.kind->mallet;
     drum->noise.amount = other ? 0 : drum->set.noise * mallet->noise * bare;
+    drum->noise.seed = drum->set.noise_seed;
 }
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.

@@ -14,10 +14,10 @@
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters
 /// of second order at the lower edge of the band and of fourth order at the upper one, all in
 /// three sections: two with zeros 1 - 1/z^2, and 1 + 2/z + 1/z^2. It is a sum of two sequences
-/// that begin anew with each contact: one is always the same, as shell and stand are, the seed of
-/// the other is the place in steps of 2 cm. So equal blows are equal to the last bit, and others
-/// alike. All is counted in samples, so how many are asked for at a time does not matter. It takes
-/// no energy from the head and gives it none.
+/// that begin anew with each contact: one is the drum's, whose shell and stand are always the same,
+/// the seed of the other is the place in steps of 2 cm. So equal blows are equal to the last bit,
+/// and others alike. All is counted in samples, so how many are asked for at a time does not
+/// matter. It takes no energy from the head and gives it none.
 ///
 /// A band that nobody would hear ends within some RISEs; the upper two, or all four, then rest.
 #include "drum/stroke_noise.h"
@@ -155,7 +155,7 @@ himc_stroke_noise himc_stroke_noise_at(double rate)
 void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double y)
 {
     noise->state = (uint64_t)llround(PLACE * x) * 4096 + (uint64_t)llround(PLACE * y);
-    noise->common = UINT64_C(1) << 36; // apart from all places
+    noise->common = (UINT64_C(1) + (uint64_t)noise->seed) << 36; // apart from all places
 }
 
 // a sample of the force feeds the bands

@@ -25,15 +25,16 @@ typedef struct himc_noise_band {
 typedef struct himc_stroke_noise {
     himc_noise_section section[3]; ///< the bands' lower edge, their upper one twice
     himc_noise_band band[HIMC_NOISE_BANDS];
-    double amount; ///< 0 none .. 1; may change at any time
-    double rate;   ///< (Hz)
-    double damp;   ///< by what lies on the head, 0 .. 1 as `damp` of himc/membrane.h ...
-    double held;   ///< ... of an amplitude, a sample
-    double follow; ///< of a level towards its goal, a sample
-    uint64_t state, common; ///< of the two sequences
-    double force;    ///< of the last sample (N)
-    double slope[3]; ///< F' then, and what two filters leave of it (N/s)
-    double pole;     ///< of these filters
+    double amount;          ///< 0 none .. 1; may change at any time
+    double rate;            ///< (Hz)
+    double damp;            ///< by what lies on the head, 0 .. 1 as `damp` of himc/membrane.h ...
+    double held;            ///< ... of an amplitude, a sample
+    double follow;          ///< of a level towards its goal, a sample
+    int seed;               ///< of the drum's own sequence
+    uint64_t state, common; ///< of the two sequences, the place's and the drum's
+    double force;           ///< of the last sample (N)
+    double slope[3];        ///< F' then, and what two filters leave of it (N/s)
+    double pole;            ///< of these filters
     int sounds; ///< bands that are heard, the lowest first; 0: nothing need be run without a force
 } himc_stroke_noise;
 
