@@ -20,6 +20,7 @@ typedef struct fit_drum {
                              ///< 2 (m - 1) on, cosine and sine; -1: none found
     bool strange;            ///< tuned by (1,1) alone: its other partials are elsewhere
     bool hidden;             ///< by the room, which rings longer: losses are uncertain
+    bool dry;                ///< nearer without our room
     double score;
     double comb; ///< (dB) by which its modes stand out of the spectrum, summed
 } fit_drum;

@@ -1,9 +1,10 @@
 /// fit_strike.c: which drum and which mallet have sounded, by the spectrum of the blow.
 ///
-/// The performer strikes each drum that may be it with every mallet, mf, then the nearest two from
-/// soft to strong, heard by two ears. The blow and its ring are compared in half octaves, their
-/// means made alike, in which what the recording has as noise counts as such in both. No two drums
-/// have the same noise of a stroke, so what is compared with is the mean over several.
+/// The performer strikes each drum that may be it with every mallet, mf, in our room and in none,
+/// then the nearest two from soft to strong, heard by two ears. The blow and its ring are compared
+/// in half octaves, their means made alike, in which what the recording has as noise counts as such
+/// in both. No two drums have the same noise of a stroke, so what is compared with is the mean over
+/// several.
 #include "cli.h"
 #include "fit_drum.h"
 
@@ -120,9 +121,10 @@ static himc_performance *perform(const fit_drum *d, int mallet, int dynamic, int
     config.heard = true;
     himc_performance *p = himc_performance_new(&config, error);
     himc_drum *drum = p ? fit_drum_make(d, mallet, rate, error) : NULL;
-    bool good = drum && himc_performance_add_drum(p, drum, error) &&
-                cli_tell(p, noise, NULL, error) && cli_tell(p, "tempo 120", NULL, error) &&
-                cli_tell(p, stroke, NULL, error) && cli_tell(p, "play", NULL, error);
+    bool good =
+        drum && himc_performance_add_drum(p, drum, error) && cli_tell(p, noise, NULL, error) &&
+        (!d->dry || cli_tell(p, "room 0", NULL, error)) && cli_tell(p, "tempo 120", NULL, error) &&
+        cli_tell(p, stroke, NULL, error) && cli_tell(p, "play", NULL, error);
     himc_drum_release(drum);
     if (good)
         return p;
@@ -254,9 +256,12 @@ bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int co
     double here[MALLETS];
     int kept = 0;
     for (int i = 0; i < count; i++) {
-        fit_drum d = choice[i];
-        if (!try_mallets(&t, &d, here, error))
+        fit_drum d = choice[i], dry = d;
+        dry.dry = true;
+        if (!try_mallets(&t, &d, here, error) || !try_mallets(&t, &dry, here, error))
             return false;
+        if (dry.distance < d.distance)
+            d = dry;
         int k = kept < FINALISTS ? kept++ : FINALISTS;
         for (; k > 0 && unlike(&d) < unlike(&likely[k - 1]); k--)
             if (k < FINALISTS)
