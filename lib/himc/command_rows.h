@@ -321,7 +321,7 @@ HIMC_COMMAND_ROW(
     "instrument's")
 HIMC_COMMAND_ROW(
     NOISE, noise, DRUM, NOW, 0, "AMOUNT [SEED]",
-    "sets how loud felt, shaft, shell and stand answer a blow, each seed another drum's")
+    "sets how loud felt, shaft, shell and stand answer a blow; each seed is another drum")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
                  "sets where the head stands and how it is tilted")
 HIMC_COMMAND_ROW(PICKUP, pickup, DRUM, NOW, HIMC_CHANGES_HEAD,

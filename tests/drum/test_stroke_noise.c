@@ -131,6 +131,25 @@ static void test_equal_blows_are_equal_and_others_alike(void)
     TEST_ASSERT_TRUE(alike > 0.6 && alike < 0.95);
 }
 
+// but for the fifth that is the place's
+static void test_another_seed_is_another_drum_as_loud(void)
+{
+    static double usual[LENGTH], zero[LENGTH], other[LENGTH];
+    noise_of("mallet medium", 3, -0.2, usual);
+    noise_of("noise 0.5 0", 3, -0.2, zero); // `noise 1` follows, and the seed stays
+    noise_of("noise 0.5 7", 3, -0.2, other);
+    double own = 0, theirs = 0, both = 0;
+    for (int i = 0; i < LENGTH; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(usual[i], zero[i]);
+        own += usual[i] * usual[i];
+        theirs += other[i] * other[i];
+        both += usual[i] * other[i];
+    }
+    printf("correlation %.2f, power %.2f\n", both / sqrt(own * theirs), theirs / own);
+    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.2, both / sqrt(own * theirs));
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, 1, theirs / own);
+}
+
 static void test_noise_is_the_same_in_all_blocks(void)
 {
     static double one[LENGTH], many[LENGTH], place[LENGTH], force[LENGTH];
@@ -288,6 +307,7 @@ int main(void)
     RUN_TEST(test_noise_decays_in_the_lowest_octave_as_it_should_and_faster_above);
     RUN_TEST(test_hard_mallets_and_fast_blows_have_more_noise_for_their_force);
     RUN_TEST(test_equal_blows_are_equal_and_others_alike);
+    RUN_TEST(test_another_seed_is_another_drum_as_loud);
     RUN_TEST(test_noise_is_the_same_in_all_blocks);
     RUN_TEST(test_noise_is_alike_at_two_places_and_goes_with_its_amount);
     RUN_TEST(test_noise_rests_as_soon_as_nobody_hears_it_and_without_a_step);

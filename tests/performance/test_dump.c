@@ -234,7 +234,7 @@ static void test_performance_with_four_drums_and_odd_settings_plays_the_same_fro
                                        "loop 1"};
     static const char *const drum_said[4][4] = {
         {"tune A2", "decay 1.7", "mallet soft", "gain -4.1"},
-        {"tune 117.3", "density 0.31", "mallet 3e8 2.3 0.021", "noise 0.3"},
+        {"tune 117.3", "density 0.31", "mallet 3e8 2.3 0.021", "noise 0.3 8"},
         {"pickups 2", "radius 0.29", "uniformity 0.31 7", "glide 0.3"},
         {"shape rectangle 0.5 0.37", "tune 151.3", "damp 0.1", "decay 2.7 1e-6"}};
     himc_performance *p = session_new(), *other = session_new();

@@ -122,8 +122,8 @@ HIMC_RT void himc_drum_go_gliss(himc_drum *drum);
 /// Of a stroke's noise a cloth all over the head takes this part; chosen: 10 dB.
 #define HIMC_MUFFLED_NOISE 0.7
 
-/// How loud the noise of a stroke with that mallet is: none but where a timpanist's mallet is
-/// usual, as its bands are a timpano's.
+/// How loud the noise of a stroke with that mallet is, and whose: none but where a timpanist's
+/// mallet is usual, as its bands are a timpano's.
 static inline void himc_drum_find_noise(himc_drum *drum, const himc_mallet_head *mallet)
 {
     double bare = 1 - HIMC_MUFFLED_NOISE * himc_membrane_head(drum->membrane)->muffle;

@@ -30,7 +30,7 @@ typedef struct himc_stroke_noise {
     double damp;            ///< by what lies on the head, 0 .. 1 as `damp` of himc/membrane.h ...
     double held;            ///< ... of an amplitude, a sample
     double follow;          ///< of a level towards its goal, a sample
-    int seed;               ///< of the drum's own sequence
+    int seed;               ///< of the drum's own sequence, 0 .. HIMC_SEED_MAX
     uint64_t state, common; ///< of the two sequences, the place's and the drum's
     double force;           ///< of the last sample (N)
     double slope[3];        ///< F' then, and what two filters leave of it (N/s)
